@@ -1,10 +1,3 @@
-#define CATCH_CONFIG_MAIN
-#include <catch2/catch.hpp>
+#include "tests/run_tests.h"
 
-#include "tests/source_dir.h"
-
-namespace tactus {
-
-std::string source_dir() { return TACTUS_SOURCE_DIR; }
-
-}  // namespace tactus
+int main(int argc, char** argv) { return tactus::run_tests(argc, argv); }

@@ -24,7 +24,7 @@ using std::numbers::pi;
 constexpr double kAirDensity_kg_m3 = 1.21;
 constexpr double kSoundSpeed_m_s = 343;
 // Bounds of plausible input; values beyond them are clamped.
-constexpr double kMaxMass_kg = 1e3, kMaxSpeed_m_s = 50, kMinSpeed_m_s = 1e-4, kMinCurvature_1_m = 1;
+constexpr double kMaxMass_kg = 1e3, kMaxApproach_m_s = 50, kMinApproach_m_s = 1e-4, kMinCurvature_1_m = 1;
 // FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
 constexpr std::size_t kMicroCollisions = 4;
 constexpr double kMicroWithin_s = 0.015;
@@ -206,7 +206,7 @@ Strike Impacts::strike(const contact_event_t& event, sync::HostTime scheduled, c
   strike.min_audible_gain = kInaudible;
   if (!plausible(event)) return strike;
   const double mass = std::clamp<double>(event.effective_mass_kg, 1e-6, kMaxMass_kg);
-  const double speed = std::clamp<double>(event.approach_speed_m_s, kMinSpeed_m_s, kMaxSpeed_m_s);
+  const double speed = std::clamp<double>(event.approach_speed_m_s, kMinApproach_m_s, kMaxApproach_m_s);
   const double curvature = std::max<double>(event.curvature_1_m, kMinCurvature_1_m);
   const std::array<const Voice*, 2> bodies{&voice(event.body_a), &voice(event.body_b)};
   const std::array<int, 2> ids{event.body_a, event.body_b}, surfaces{event.material_a, event.material_b};

@@ -20,7 +20,7 @@ constexpr double kMaxLevel = 4;
 constexpr double kMinPitch = 0.5, kMaxPitch = 2;
 // The same limits as for scrapes: below the minimum there is no sliding or rolling; above the maximum loudness and
 // speed are clamped (design).
-constexpr double kMinSpeed_m_s = 1e-3, kMaxSpeed_m_s = 5, kMaxForce_N = 50;
+constexpr double kMinSpeed_m_s = 1e-3, kMaxRecordedSpeed_m_s = 5, kMaxRecordedForce_N = 50;
 // Between two updates of contacts; a longer interval is a gap (design).
 constexpr double kMaxStep_s = 0.1;
 constexpr float kHalfPower = std::numbers::sqrt2_v<float> / 2;
@@ -183,9 +183,9 @@ const std::vector<RecordedContact>& Sampler::recorded_contacts(const sync::Conta
   };
   for (const contact_t& c : contacts) {
     if (c.points.empty() || !plausible(c)) continue;
-    const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxForce_N);
+    const double force_N = std::clamp<double>(static_cast<double>(c.normal_force_N), 0, kMaxRecordedForce_N);
     const Eigen::Vector3d sliding = to_eigen(c.sliding_velocity_m_s), rolling_velocity = to_eigen(c.rolling_velocity_m_s);
-    const double slides = std::min(sliding.norm(), kMaxSpeed_m_s), rolls = std::min(rolling_velocity.norm(), kMaxSpeed_m_s);
+    const double slides = std::min(sliding.norm(), kMaxRecordedSpeed_m_s), rolls = std::min(rolling_velocity.norm(), kMaxRecordedSpeed_m_s);
     Motion& motion = motions_[c.contact_id];
     motion.present = true;
     motion.slides.step(sliding, dt_s), motion.rolls.step(rolling_velocity, dt_s);

@@ -9,21 +9,21 @@ namespace {
 
 // The same tolerance as for points (closest_point.cpp): far below the resolution of a hand, far above rounding
 // errors in a room.
-constexpr double kTolerance_m = 1e-9;
+constexpr double kPoseTolerance_m = 1e-9;
 // Violation that may remain where only dependent sets exist: 1 mN at 1 N/mm (design).
-constexpr double kNegligible_m = 1e-6;
+constexpr double kNegligibleDepth_m = 1e-6;
 // A unit normal whose part outside the span of the others is shorter counts as dependent.
-constexpr double kIndependent = 1e-6;
+constexpr double kIndependentPart = 1e-6;
 
 // The half spaces in coordinates about the goal, with normals of length 1.
-struct Problem {
+struct PoseProblem {
   std::array<Vector6, kMaxHalfSpaces> normal;
   std::array<double, kMaxHalfSpaces> deficit;
   std::size_t size = 0;
 
   std::size_t max_violation_index(const Vector6& x) const {
     std::size_t worst = size;
-    double violation = kTolerance_m;
+    double violation = kPoseTolerance_m;
     for (std::size_t i = 0; i < size; ++i) {
       const double by = deficit[i] - normal[i].dot(x);
       if (by > violation) violation = by, worst = i;
@@ -45,7 +45,7 @@ struct State {
 
 // Adds half space p and removes those that block it. Returns false when p and the binding ones have no common
 // pose.
-bool add_constraint(const Problem& problem, std::size_t p, State& s) {
+bool add_constraint(const PoseProblem& problem, std::size_t p, State& s) {
   double own = 0;  // multiplier of p
   for (int iteration = 0; iteration <= 6; ++iteration) {
     const Vector6& n = problem.normal[p];
@@ -55,7 +55,7 @@ bool add_constraint(const Problem& problem, std::size_t p, State& s) {
     double dual = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < s.set.size(); ++k)
       if (r[k] > 0 && s.u[k] / r[k] < dual) dual = s.u[k] / r[k], blocking = k;
-    const bool moves = s.set.size() < 6 && z.norm() > kIndependent;
+    const bool moves = s.set.size() < 6 && z.norm() > kIndependentPart;
     const double primal =
         moves ? (problem.deficit[p] - n.dot(s.x)) / z.squaredNorm() : std::numeric_limits<double>::infinity();
     const double step = std::min(dual, primal);
@@ -74,7 +74,7 @@ bool add_constraint(const Problem& problem, std::size_t p, State& s) {
   return false;
 }
 
-bool solve(const Problem& problem, State& s) {
+bool solve(const PoseProblem& problem, State& s) {
   // A larger number of iterations is a cycle caused by rounding.
   constexpr std::size_t kMaxIterations = 3 * kMaxHalfSpaces;
   for (std::size_t iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -83,11 +83,11 @@ bool solve(const Problem& problem, State& s) {
     if (!add_constraint(problem, worst, s)) break;
   }
   const std::size_t worst = problem.max_violation_index(s.x);
-  return worst == problem.size || problem.deficit[worst] - problem.normal[worst].dot(s.x) <= kNegligible_m;
+  return worst == problem.size || problem.deficit[worst] - problem.normal[worst].dot(s.x) <= kNegligibleDepth_m;
 }
 
 // Used when there is no common pose: every half space yields like a spring (closest_point.cpp).
-Vector6 compromise(const Problem& problem) {
+Vector6 compromise(const PoseProblem& problem) {
   constexpr double kSoftness = 0.02;
   constexpr int kMaxIterations = 30, kHalvings = 20;
   const auto value = [&](const Vector6& x) {
@@ -109,7 +109,7 @@ Vector6 compromise(const Problem& problem) {
       pull += problem.deficit[i] * problem.normal[i];
     }
     Vector6 step = slope.llt().solve(pull) - x;
-    if (step.norm() < kTolerance_m) break;
+    if (step.norm() < kPoseTolerance_m) break;
     double next = value(x + step);
     for (int k = 0; k < kHalvings && next > cost; ++k) {
       step *= 0.5;
@@ -158,7 +158,7 @@ bool BindingSet::add(std::size_t index, const Vector6& normal) {
   if (size_ >= 6) return false;
   const Vector6 z = free_part(normal);
   const double length = z.norm();
-  if (!(length > kIndependent * normal.norm())) return false;
+  if (!(length > kIndependentPart * normal.norm())) return false;
   for (std::size_t k = 0; k < size_; ++k) triangle_[k][size_] = basis_[k].dot(normal);
   triangle_[size_][size_] = length;
   basis_[size_] = z / length;
@@ -213,7 +213,7 @@ bool distribute(std::span<const PoseHalfSpace> region, std::span<const double> w
 }
 
 ClosestPose closest_pose(std::span<const PoseHalfSpace> region, const Vector6& goal) {
-  Problem p;
+  PoseProblem p;
   p.size = std::min(region.size(), kMaxHalfSpaces);
   std::array<double, kMaxHalfSpaces> length;
   for (std::size_t i = 0; i < p.size; ++i) {

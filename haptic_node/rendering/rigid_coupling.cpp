@@ -7,7 +7,7 @@
 namespace tactus::haptic {
 namespace {
 
-constexpr double kRigid_N_m = 1e12, kFixed_kg = 1e10;
+constexpr double kRigid_N_m = 1e12, kImmovable_kg = 1e10;
 
 Eigen::Vector3d tangential(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
   return v - v.dot(normal) * normal;
@@ -39,7 +39,7 @@ CouplingLimits turning_limits(const Settings& s) {
 
 // Of a wall without compliance.
 double stiffest(const CouplingLimits& limits, double period_s, double device_delay_s) {
-  return coupling_gains(kRigid_N_m, 0, kFixed_kg, period_s, period_s, limits, device_delay_s).stiffness_N_m;
+  return coupling_gains(kRigid_N_m, 0, kImmovable_kg, period_s, period_s, limits, device_delay_s).stiffness_N_m;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ namespace tactus::haptic {
 namespace {
 
 // Dissipated energy counts as credit up to this value, so that old friction does not pay for a new oscillation.
-constexpr double kMaxCredit_J = 0.01;
+constexpr double kMaxLoopCredit_J = 0.01;
 // Refill of the allowance: after a violation, touch recovers within seconds. In one episode the fast refill ends at
 // 0.4 mJ, so that an episode of ten seconds generates at most 1 mJ; the slow one is a third of a millijoule in half a
 // minute.
@@ -23,7 +23,7 @@ void EnergyAccount::settle(double stored_J, double bodies_J, double generated_W,
     discarded_J_ -= refill_J;
     refilled_J_ += refill_J;
   }
-  const double excess_J = std::max(0.0, credit_J_ - stored_J - kMaxCredit_J);
+  const double excess_J = std::max(0.0, credit_J_ - stored_J - kMaxLoopCredit_J);
   discarded_J_ += excess_J;
   credit_J_ -= excess_J;
   const double allowed_J = std::max(0.0, credit_J_ + allowance_J);

@@ -11,9 +11,9 @@ namespace {
 
 // Number of entries kept without force. Design: several times the number in a touch model.
 constexpr std::size_t kMaxLedgers = 32;
-// The same limits as in safety.cpp, faster than any hand. Above them the device has jumped, and no work is
-// counted.
-constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 100;
+// Faster than any hand, as in hand_limits.h, with room for rotation (design): above them the device has jumped, and no
+// work is counted.
+constexpr double kMaxPushSpeed_m_s = 40, kMaxPushSpin_rad_s = 100;
 
 // Clamped as the surfaces are: a body that reports a higher speed gives no credit for it.
 Eigen::Vector3d clamp_speed(const Eigen::Vector3d& velocity, double max_m_s) {
@@ -151,8 +151,8 @@ void Passivity::observe(const StoredEnergy& bodies, const Eigen::Vector3d& moved
                         const Eigen::Vector3d& turned_rad, double age_s, double dt, const DeviceLoop& loop) {
   time_s_ += dt;
   const double span_s = loop.immediate() ? dt : loop.span_s;
-  const bool moved = moved_m.allFinite() && moved_m.norm() <= kMaxHandSpeed_m_s * span_s;
-  const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kMaxHandSpin_rad_s * span_s;
+  const bool moved = moved_m.allFinite() && moved_m.norm() <= kMaxPushSpeed_m_s * span_s;
+  const bool turned = turned_rad.allFinite() && turned_rad.norm() <= kMaxPushSpin_rad_s * span_s;
   const Eigen::Vector3d by_m = moved ? moved_m : Eigen::Vector3d(Eigen::Vector3d::Zero());
   const Eigen::Vector3d by_rad = turned ? turned_rad : Eigen::Vector3d(Eigen::Vector3d::Zero());
   if (span_s > 0) moved_m_ = by_m, turned_rad_ = by_rad, motion_s_ = span_s;

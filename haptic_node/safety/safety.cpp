@@ -5,15 +5,10 @@
 #include <utility>
 
 #include "haptic_node/devices/device.h"
+#include "haptic_node/safety/hand_limits.h"
 
 namespace tactus::haptic {
 namespace {
-
-// Faster than any hand (that of a pitcher reaches 40 m/s): the device jumped, as a replayed motion may; no work is
-// counted.
-constexpr double kMaxHandSpeed_m_s = 40;
-// The same for rotation: one revolution per tenth of a second (design: twice the speed of a wrist).
-constexpr double kMaxHandSpin_rad_s = 63;
 
 // A late tick must not cause a jump of the force: it counts as two ticks at most.
 constexpr double kMaxSlewTicks = 2;

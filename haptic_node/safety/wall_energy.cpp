@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "haptic_node/safety/hand_limits.h"
+
 namespace tactus::haptic {
 namespace {
 
@@ -19,8 +21,6 @@ constexpr double kStart_J = 1e-5;
 // A force that is held for longer than this acts on a hand that opposes it, and only its change accelerates the hand. Such
 // a loop lags so far that its walls also return the allowance. Design: twice the tick of 1 kHz.
 constexpr double kSlow_s = 0.002;
-// The same limits as in safety.cpp: above them the device has jumped, and no work is counted.
-constexpr double kMaxHandSpeed_m_s = 40, kMaxHandSpin_rad_s = 63;
 
 double work_J(const WallForce& f, const DeviceMotion& motion, double dt) {
   const bool moved = motion.moved_m.allFinite() && motion.moved_m.norm() <= kMaxHandSpeed_m_s * dt;

@@ -4,12 +4,11 @@
 
 #include "sim_node/behaviour/impulse/build_world.h"
 #include "sim_node/model/archive_motion.h"
+#include "sim_node/model/index.h"
 #include "sim_node/model/tool_shape.h"
 
 namespace tactus::sim {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Maximum number of contacts in a state: more than any step has.
 constexpr std::size_t kMaxContacts = 1 << 16;

@@ -6,6 +6,7 @@
 
 #include "sim_node/collision/detectors/layer_options.h"
 #include "sim_node/collision/gaps/select_points.h"
+#include "sim_node/model/index.h"
 #include "sync/time/phases.h"
 
 namespace tactus::sim {
@@ -16,7 +17,6 @@ constexpr ShapeKind kAllKinds[kKinds] = {ShapeKind::kBox,        ShapeKind::kSph
                                          ShapeKind::kCapsule,    ShapeKind::kPlane,  ShapeKind::kMesh,
                                          ShapeKind::kHeightfield};
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 std::size_t both(ShapeKind a, ShapeKind b) {
   return static_cast<std::size_t>(a) * kKinds + static_cast<std::size_t>(b);
 }

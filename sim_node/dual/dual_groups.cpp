@@ -7,11 +7,10 @@
 
 #include "sim_node/behaviour/behaviour_checks.h"
 #include "sim_node/dual/group_bodies.h"
+#include "sim_node/model/index.h"
 
 namespace tactus::sim {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 GroupingLimits limits_of(const WorldDef& def, const Settings& s) {
   GroupingLimits l;

@@ -3,14 +3,9 @@
 #include <tactus/contact_event_t.hpp>
 
 #include "sim_node/dual/dual_groups.h"
+#include "sim_node/model/index.h"
 
 namespace tactus::sim {
-namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 void DualGroups::mark(std::span<const int> units, char value) {
   list_.clear();
   for (const int unit : units) world_->unit_bodies(unit, list_);

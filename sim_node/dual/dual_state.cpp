@@ -1,13 +1,13 @@
 // Serializes the state of both groups, with the current visual step and the next one.
 
 #include "sim_node/dual/dual_groups.h"
+#include "sim_node/dual/state_limits.h"
 #include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMaxContacts = 1 << 16;  // as of a tracker
-constexpr std::size_t kMaxLoads = 1 << 12, kMaxChanges = 1 << 12;
+constexpr std::size_t kMaxLoads = 1 << 12;
 
 }  // namespace
 
@@ -37,14 +37,14 @@ void DualGroups::archive(StateArchive& a) {
     a.require(load.body >= 0, "the state holds a force on no body");
     a(load.force_N), a(load.point_m), a(load.torque_N_m), a(load.at_centre);
   });
-  a.list(changes_, kMaxChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
+  a.list(changes_, kMaxStoredChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
   a.list(queued_changes_, kMaxLoads, [&](QueuedChange& w) {
     a(w.kind), a.index(w.body, bodies), a(w.vector), a(w.orientation);
     a.require(w.body >= 0 && w.kind >= QueuedChange::kPose && w.kind <= QueuedChange::kSpin,
               "the state holds a number out of range");
   });
   a.fixed(motions_, [&](BodyMotion& m) { sim::archive(a, m); });
-  a.list(contacts_, kMaxContacts, [&](Manifold& m) { sim::archive(a, m, bodies, source_.shapes()); });
+  a.list(contacts_, kMaxStoredContacts, [&](Manifold& m) { sim::archive(a, m, bodies, source_.shapes()); });
   bool stale = stale_;
   a(stale);
   if (!a.reads()) return;

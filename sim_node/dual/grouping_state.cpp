@@ -1,12 +1,13 @@
 // Serializes the state of grouping. The trajectories of the step belong to the caller: pass them again by resume().
 
 #include "sim_node/dual/grouping.h"
+#include "sim_node/dual/state_limits.h"
 #include "sim_node/model/state_archive.h"
 
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMaxPairs = 1 << 18, kMaxTools = 64;
+constexpr std::size_t kMaxTools = 64;
 
 void archive(StateArchive& a, SweptSphere& s) { a(s.centre_m), a(s.velocity_m_s), a(s.radius_m), a(s.pad_m); }
 
@@ -33,7 +34,7 @@ void Grouping::archive(StateArchive& a) {
     for (const int i : departed_) is_departed_[static_cast<std::size_t>(i)] = 0;
   }
   for (auto* list : {&haptic_, &departed_, &requested_}) a.list(*list, n, body);
-  a.list(touching_, kMaxPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
+  a.list(touching_, kMaxStoredPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
   for (const int i : haptic_) {
     const auto k = static_cast<std::size_t>(i);
     member_[k] = 1;

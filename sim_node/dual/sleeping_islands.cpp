@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "sim_node/model/index.h"
+
 namespace tactus::sim {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 int root(std::vector<int>& parent, int i) {
   while (parent[index(i)] != i) i = parent[index(i)] = parent[index(parent[index(i)])];

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-namespace tactus::sim {
-namespace {
-constexpr std::size_t kMaxPairs = 1 << 18;
-}  // namespace
+#include "sim_node/dual/state_limits.h"
 
+namespace tactus::sim {
 void SweptTrajectories::set(std::size_t bodies, std::span<const int> members, std::span<const SweptSphere> trajectories,
                std::span<const std::pair<int, int>> touching, double horizon_s) {
   for (const int body : members_) at_[index(body)] = -1;
@@ -46,7 +44,7 @@ void SweptTrajectories::archive(StateArchive& a, std::size_t bodies) {
   a.require(std::is_sorted(members.begin(), members.end()), "the state holds an unsorted list");
   a.list(trajectories, bodies, [&](SweptSphere& s) { a(s.centre_m), a(s.velocity_m_s), a(s.radius_m), a(s.pad_m); });
   a.require(trajectories.size() == members.size(), "the state holds a list that is too long");
-  a.list(touching, kMaxPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
+  a.list(touching, kMaxStoredPairs, [&](std::pair<int, int>& pair) { body(pair.first), body(pair.second); });
   a(horizon_s_);
   if (a.reads()) set(bodies, members, trajectories, touching, horizon_s_);
 }

@@ -5,11 +5,10 @@
 
 #include "sim_node/dual/group_bodies.h"
 #include "sim_node/model/finite_motion.h"
+#include "sim_node/model/index.h"
 
 namespace tactus::sim {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Bodies touch within this distance, m; design: the gap at which a contact is reported before it closes.
 constexpr double kTouching_m = 0.001;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "sim_node/dual/state_limits.h"
 #include "sim_node/model/archive_motion.h"
 
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMaxContacts = 1 << 16;  // the limit of ContactTracker
-constexpr std::size_t kMaxCoordinates = 1 << 16, kMaxSubSteps = 64, kMaxChanges = 1 << 12;
+constexpr std::size_t kMaxCoordinates = 1 << 16, kMaxSubSteps = 64;
 
 void archive_unit(StateArchive& a, impulse::UnitState& s) {
   a(s.body.centre_m), a(s.body.orientation), a(s.body.velocity_m_s), a(s.body.spin_rad_s);
@@ -53,7 +53,7 @@ void UnitTransfer::archive(StateArchive& a, int max_units, std::size_t bodies, C
   a.require(std::is_sorted(units.begin(), units.end()), "the state holds an unsorted list");
   a.list(states, count, [&](impulse::UnitState& s) { archive_unit(a, s); });
   a.require(states.size() == units.size(), "the state holds a list that is too long");
-  a.list(contacts, kMaxContacts, [&](LiveContact& c) { tracker.archive(a, c, bodies); });
+  a.list(contacts, kMaxStoredContacts, [&](LiveContact& c) { tracker.archive(a, c, bodies); });
 }
 
 void VisualTask::archive(StateArchive& a, int units, std::size_t bodies, ContactTracker& tracker) {
@@ -61,7 +61,7 @@ void VisualTask::archive(StateArchive& a, int units, std::size_t bodies, Contact
   archive_time(a, length), archive_time(a, catch_up_time);
   entering.archive(a, units, bodies, tracker);
   archive_numbers(a, leaving, static_cast<std::size_t>(units));
-  a.list(changes, kMaxChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
+  a.list(changes, kMaxStoredChanges, [&](impulse::SceneChange& c) { c.archive(a, bodies); });
 }
 
 void VisualStep::archive(StateArchive& a, int max_units, std::size_t count, ContactTracker& tracker) {
@@ -74,7 +74,7 @@ void VisualStep::archive(StateArchive& a, int max_units, std::size_t count, Cont
     a.require(list.size() == units.size(), "the state holds a list that is too long");
   });
   a.list(live, kMaxSubSteps,
-         [&](auto& list) { a.list(list, kMaxContacts, [&](LiveContact& c) { tracker.archive(a, c, count); }); });
+         [&](auto& list) { a.list(list, kMaxStoredContacts, [&](LiveContact& c) { tracker.archive(a, c, count); }); });
   a.require(!times.empty() && states.size() == times.size() && live.size() == times.size(),
             "the state holds a list that is too long");
   for (auto* list : {&begin, &end}) {
@@ -82,7 +82,7 @@ void VisualStep::archive(StateArchive& a, int max_units, std::size_t count, Cont
     a.require(list->size() == count, "the state belongs to another scene");
   }
   trajectories.archive(a, count);
-  a.list(events, kMaxContacts, [&](contact_event_t& e) { a.message(e); });
+  a.list(events, kMaxStoredContacts, [&](contact_event_t& e) { a.message(e); });
   a(asleep);
 }
 

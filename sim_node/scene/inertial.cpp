@@ -9,7 +9,7 @@ namespace tactus::sim {
 namespace {
 
 // SDF's defaults (inertial.sdf), for a body without shapes.
-constexpr double kDefaultMass_kg = 1, kDefaultInertia_kg_m2 = 1;
+constexpr double kDefaultBodyMass_kg = 1, kDefaultInertia_kg_m2 = 1;
 
 Eigen::Matrix3d read_inertia(const LoadContext& context, const sdf::ElementPtr& inertia) {
   const auto entry = [&](const char* name, double missing) {
@@ -43,7 +43,7 @@ void read_inertial(const LoadContext& context, const sdf::ElementPtr& link, std:
   bool has_density = false;
   MassProperties p = mass_of(context.world, shapes, has_density);
   const bool has_volume = p.mass_kg > 0;
-  if (!has_volume) p = {kDefaultMass_kg, {0, 0, 0}, kDefaultInertia_kg_m2 * Eigen::Matrix3d::Identity()};
+  if (!has_volume) p = {kDefaultBodyMass_kg, {0, 0, 0}, kDefaultInertia_kg_m2 * Eigen::Matrix3d::Identity()};
   if (mass) {
     const double given_kg = mass->Get<double>();
     if (!(given_kg > 0 && given_kg < 1e9))
@@ -51,7 +51,7 @@ void read_inertial(const LoadContext& context, const sdf::ElementPtr& link, std:
                                 " must be above 0 kg: give the mass, or make the model static");
     p = scaled_to(p, given_kg);
   } else if (!has_density || !has_volume) {
-    p = scaled_to(p, kDefaultMass_kg);
+    p = scaled_to(p, kDefaultBodyMass_kg);
   }
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
   if (const sdf::ElementPtr pose = explicit_child(inertial, "pose")) {

@@ -14,7 +14,7 @@ double at_least_0(const LoadContext& context, const sdf::Element& element, doubl
   return std::min(value, 1e6);
 }
 
-vec3f_t colour(const LoadContext& context, const sdf::Element& element, const ignition::math::Color& c) {
+vec3f_t light_colour(const LoadContext& context, const sdf::Element& element, const ignition::math::Color& c) {
   const Eigen::Vector3d rgb = to_eigen(c);
   if (!rgb.allFinite()) context.reject(element, "has a colour that is not finite");
   return to_vec3f(rgb.cwiseMax(0).cwiseMin(1e3));
@@ -34,8 +34,8 @@ void add_light(LoadContext& context, const sdf::Light& light, const Eigen::Isome
                                                            : light_def_t::POINT;
   def.pose = to_pose(pose);
   def.direction = to_vec3(direction.normalized());
-  def.diffuse = colour(context, e, light.Diffuse());
-  def.specular = colour(context, e, light.Specular());
+  def.diffuse = light_colour(context, e, light.Diffuse());
+  def.specular = light_colour(context, e, light.Specular());
   const auto number = [&](double value, const char* what) {
     return static_cast<float>(at_least_0(context, e, value, what));
   };

@@ -34,7 +34,7 @@ constexpr double kSameFeature_m = 0.004;
 constexpr sync::Nanoseconds kTrackingTimeout{50'000'000};
 // Maximum back-dating of a begin: the age at which a message counts as lost.
 constexpr sync::Nanoseconds kMaxMessageAge{20'000'000};
-constexpr double kMinForce_N = 1e-4;  // smaller forces are rounding
+constexpr double kRounding_N = 1e-4;  // smaller forces are rounding
 // A tool that has rendered a late model counts as late for this time: losses in bursts do not change the model each time.
 // Design.
 constexpr sync::Nanoseconds kLateFor{1'000'000'000};
@@ -229,7 +229,7 @@ void ToolTouch::update_contact(Near& n, SimTime when, SimTime before, SimTime no
   const Vector3d place = shape_ ? Vector3d(device_ + device_orientation_ * n.tool_point_m) : device_;
   const double gap = (place - n.plane.point).dot(n.plane.normal) - radius_m_;
   const Vector3d relative_velocity = velocity_of(n) - body_of(n, bodies).velocity_at(n.plane.point);
-  const bool touches = n.force_N > kMinForce_N || n.gap_m <= settings_.touch_gap_m;
+  const bool touches = n.force_N > kRounding_N || n.gap_m <= settings_.touch_gap_m;
   SimTime onset = when;
   if (n.has_device_gap && n.device_gap_m > 0 && gap <= 0)
     onset = before + sync::Nanoseconds(std::llround(static_cast<double>((when - before).count()) * n.device_gap_m /

@@ -6,7 +6,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kMagic{'T', 'P', 'P', '1'};
+constexpr std::array<std::uint8_t, 4> kPairMagic{'T', 'P', 'P', '1'};
 // A round never has more: the limit keeps a forged number from filling the memory or spoiling a share.
 constexpr std::uint64_t kMaxNumbers = 1 << 20;
 constexpr std::int64_t kMaxTime_ns = std::int64_t{1} << 60;
@@ -41,7 +41,7 @@ struct Reader {
 }  // namespace
 
 std::vector<std::uint8_t> PairDatagram::encode(std::size_t size) const {
-  std::vector<std::uint8_t> out(kMagic.begin(), kMagic.end());
+  std::vector<std::uint8_t> out(kPairMagic.begin(), kPairMagic.end());
   put(out, run, 8);
   put(out, kind, 1);
   put(out, number, 8);
@@ -54,8 +54,8 @@ std::vector<std::uint8_t> PairDatagram::encode(std::size_t size) const {
 
 std::optional<PairDatagram> PairDatagram::decode(std::span<const std::uint8_t> data) {
   if (data.size() < kMinBytes || data.size() > kMaxBytes) return std::nullopt;
-  if (!std::equal(kMagic.begin(), kMagic.end(), data.begin())) return std::nullopt;
-  Reader r{data.subspan(kMagic.size())};
+  if (!std::equal(kPairMagic.begin(), kPairMagic.end(), data.begin())) return std::nullopt;
+  Reader r{data.subspan(kPairMagic.size())};
   PairDatagram m;
   m.run = r.number(8);
   const std::uint64_t kind = r.number(1);

@@ -19,7 +19,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x4c433032;  // "LC02", a message in one datagram
+constexpr std::uint32_t kLcmMagic = 0x4c433032;  // "LC02", a message in one datagram
 constexpr std::size_t kChannelBytes = 12;     // "CLOCK_PROBE" and its zero
 constexpr std::size_t kPrefix = 8 + kChannelBytes;
 // Maximum age of a kernel stamp. An older one is not used, and the arrival then counts as later than it was.
@@ -36,7 +36,7 @@ void attach_filter(int fd) {
   };
   const char* name = channels::kClockProbe;
   sock_filter code[] = {
-      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, 8),  BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kMagic, 0, 7),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, 8),  BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kLcmMagic, 0, 7),
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, 16), BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, word(name), 0, 5),
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, 20), BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, word(name + 4), 0, 3),
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, 24), BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, word(name + 8), 0, 1),
@@ -125,14 +125,14 @@ std::optional<ProbeSocket::Received> ProbeSocket::read_one() {
     const auto length = static_cast<std::size_t>(size);
     std::uint32_t magic = 0;
     if (length >= kPrefix) std::memcpy(&magic, bytes, sizeof magic);
-    if (ntohl(magic) != kMagic || std::memcmp(bytes + 8, channels::kClockProbe, kChannelBytes) != 0) continue;
+    if (ntohl(magic) != kLcmMagic || std::memcmp(bytes + 8, channels::kClockProbe, kChannelBytes) != 0) continue;
     if (const auto probe = decode<clock_probe_t>(bytes + kPrefix, length - kPrefix)) return Received{*probe, at};
   }
 }
 
 bool ProbeSocket::send(const clock_probe_t& probe) {
   std::uint8_t bytes[512];
-  const std::uint32_t head[2] = {htonl(kMagic), htonl(next_number_++)};
+  const std::uint32_t head[2] = {htonl(kLcmMagic), htonl(next_number_++)};
   std::memcpy(bytes, head, sizeof head);
   std::memcpy(bytes + 8, channels::kClockProbe, kChannelBytes);
   const int size = probe.encode(bytes + kPrefix, 0, static_cast<int>(sizeof bytes - kPrefix));

@@ -3,12 +3,12 @@
 namespace tactus::sync {
 namespace {
 // A larger fall of simulated time means that the world restarted, as in sync/clocks/sim_clock_tracker.h.
-constexpr Nanoseconds kMaxStepBack{1'000'000'000};
+constexpr Nanoseconds kMaxFallBack{1'000'000'000};
 }  // namespace
 
 void TouchForces::follow(Contact& contact, const Eigen::Vector3d& impulse_N_s, SimTime t) {
   contact.present = contact.pushed = true;
-  if (contact.time - t > kMaxStepBack) contact = {t, impulse_N_s, Eigen::Vector3d::Zero(), true, true};
+  if (contact.time - t > kMaxFallBack) contact = {t, impulse_N_s, Eigen::Vector3d::Zero(), true, true};
   if (t <= contact.time) return;
   contact.force_N = (impulse_N_s - contact.impulse_N_s) / to_seconds(t - contact.time);
   contact.time = t;

@@ -24,17 +24,17 @@ constexpr std::array kReasons{"start", "periodic", "underflow"};
 constexpr std::array kStages{"ready", "shown"};
 
 // A text is one cell; numbers and names of kinds are written as they are.
-std::string cell(const std::string& text) { return csv_cell(text); }
+std::string escaped_cell(const std::string& text) { return csv_cell(text); }
 template <class Other>
-const Other& cell(const Other& value) {
+const Other& escaped_cell(const Other& value) {
   return value;
 }
 
 template <class First, class... Rest>
 std::string row(const First& first, const Rest&... rest) {
   std::ostringstream line;
-  line << cell(first);
-  ((line << ',' << cell(rest)), ...);
+  line << escaped_cell(first);
+  ((line << ',' << escaped_cell(rest)), ...);
   line << '\n';
   return line.str();
 }

@@ -12,12 +12,12 @@
 namespace tactus::sync {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
 
-constexpr std::size_t kBlockBytes = 1 << 20;  // passed to the sink in one call
+constexpr std::size_t kSinkBytes = 1 << 20;  // passed to the sink in one call
 
 // True for the first page of LOG_TYPES; each part of a recording has one.
-bool is_first_page(Bytes data) {
+bool is_first_page(ByteSpan data) {
   return std::string_view(reinterpret_cast<const char*>(data.data()), data.size()).starts_with("tactus types, page 1 of ");
 }
 
@@ -25,9 +25,9 @@ bool is_first_page(Bytes data) {
 class Output {
  public:
   explicit Output(std::unique_ptr<LogSink> sink) : sink_(std::move(sink)) {}
-  void write(const LogEvent& e, Bytes data) {
+  void write(const LogEvent& e, ByteSpan data) {
     append_event(block_, events_++, e.timestamp_us, e.channel, data);
-    if (block_.size() >= kBlockBytes) flush();
+    if (block_.size() >= kSinkBytes) flush();
   }
   void flush() {
     const std::string reason = sink_->append(block_);
@@ -44,7 +44,7 @@ class Output {
 
 }  // namespace
 
-UpgradeCounts upgrade_log(Bytes log, std::unique_ptr<LogSink> sink) {
+UpgradeCounts upgrade_log(ByteSpan log, std::unique_ptr<LogSink> sink) {
   std::vector<RecordedType> types = recorded_types(log);
   if (types.empty()) throw std::runtime_error("does not describe its message types (LOG_TYPES), so it cannot be converted");
   const MessageConverter converter(std::move(types));
@@ -59,7 +59,7 @@ UpgradeCounts upgrade_log(Bytes log, std::unique_ptr<LogSink> sink) {
     }
     const auto converted = converter.convert(e.data);
     counts.converted += converted.has_value();
-    out.write(e, converted ? Bytes(*converted) : e.data);
+    out.write(e, converted ? ByteSpan(*converted) : e.data);
   }
   out.flush();
   counts.events = out.events();

@@ -43,7 +43,7 @@ class Quantile : public Aligner {
   Nanoseconds delay_{0};
 };
 
-constexpr std::array<const char*, 2> kNames{"fixed", "quantile"};
+constexpr std::array<const char*, 2> kAlignerNames{"fixed", "quantile"};
 
 }  // namespace
 
@@ -53,11 +53,11 @@ std::unique_ptr<Aligner> make_aligner(AlignerKind kind, Nanoseconds fixed) {
 }
 
 AlignerKind parse_aligner(const std::string& word) {
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (word == kNames[i]) return static_cast<AlignerKind>(i);
+  for (std::size_t i = 0; i < kAlignerNames.size(); ++i)
+    if (word == kAlignerNames[i]) return static_cast<AlignerKind>(i);
   throw std::invalid_argument("there is no aligner \"" + word + "\"; choose fixed or quantile");
 }
 
-const char* name_of(AlignerKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+const char* name_of(AlignerKind kind) { return kAlignerNames[static_cast<std::size_t>(kind)]; }
 
 }  // namespace tactus::sync

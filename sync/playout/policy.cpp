@@ -14,7 +14,7 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::array<const char*, 5> kNames{"asap", "aligned", "experiment", "local_haptic_first", "itouch2005"};
+constexpr std::array<const char*, 5> kPolicyNames{"asap", "aligned", "experiment", "local_haptic_first", "itouch2005"};
 constexpr double kMax_s = 60;
 // Known modalities in the order of the loop of I-Touch (Pocheville 2005), which their tables give; then unknown ones by name.
 std::vector<std::string> serial_order(const std::map<std::string, Nanoseconds>& needed) {
@@ -44,13 +44,13 @@ Nanoseconds common_delay(const PlayoutPlan& plan, const std::map<std::string, Na
 }  // namespace
 
 Policy parse_policy(const std::string& word) {
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (word == kNames[i]) return static_cast<Policy>(i);
+  for (std::size_t i = 0; i < kPolicyNames.size(); ++i)
+    if (word == kPolicyNames[i]) return static_cast<Policy>(i);
   throw std::invalid_argument("there is no policy \"" + word +
                               "\"; choose asap, aligned, experiment, local_haptic_first or itouch2005");
 }
 
-const char* name_of(Policy policy) { return kNames[static_cast<std::size_t>(policy)]; }
+const char* name_of(Policy policy) { return kPolicyNames[static_cast<std::size_t>(policy)]; }
 
 void PlayoutPlan::check() const {
   if (policy != Policy::kExperiment && !soa.empty())

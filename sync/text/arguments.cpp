@@ -36,6 +36,7 @@ Argument Arguments::add_option(const std::string& name, Value& value, const std:
   return Argument(app_->add_option(name, value, meaning));
 }
 template Argument Arguments::add_option(const std::string&, int&, const std::string&);
+template Argument Arguments::add_option(const std::string&, unsigned&, const std::string&);
 template Argument Arguments::add_option(const std::string&, double&, const std::string&);
 template Argument Arguments::add_option(const std::string&, std::int64_t&, const std::string&);
 template Argument Arguments::add_option(const std::string&, std::uint64_t&, const std::string&);
@@ -43,6 +44,7 @@ template Argument Arguments::add_option(const std::string&, std::string&, const 
 template Argument Arguments::add_option(const std::string&, std::optional<double>&, const std::string&);
 template Argument Arguments::add_option(const std::string&, std::optional<std::int64_t>&, const std::string&);
 template Argument Arguments::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+template Argument Arguments::add_option(const std::string&, std::vector<int>&, const std::string&);
 template Argument Arguments::add_option(const std::string&, std::vector<double>&, const std::string&);
 template Argument Arguments::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 

@@ -71,8 +71,8 @@ class Arguments {
   explicit Arguments(const std::string& about = "");
   void description(const std::string& about);
 
-  // name: "--name", or "NAME" of a positional argument. Value: int, double, std::int64_t, std::uint64_t, std::string, an
-  // optional double, std::int64_t or std::string, or a vector of double or std::string.
+  // name: "--name", or "NAME" of a positional argument. Value: int, unsigned, double, std::int64_t, std::uint64_t, std::string,
+  // an optional double, std::int64_t or std::string, or a vector of int, double or std::string.
   template <class Value>
   Argument add_option(const std::string& name, Value& value, const std::string& meaning = "");
   Argument add_flag(const std::string& name, bool& value, const std::string& meaning);

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <regex>
 
+#include "sync/text/pattern.h"
 #include "sync/tools/channel_table.h"
 #include "sync/log/timestamped_events.h"
 #include "sync/tools/exported_logs.h"
@@ -85,7 +85,7 @@ json schema_of(const Channel& c, bool wide) {
 class Export {
  public:
   explicit Export(const ExportOptions& export_options)
-      : options_(export_options), selected_(export_options.channels.empty() ? ".*" : export_options.channels, std::regex::extended | std::regex::optimize) {}
+      : options_(export_options), selected_(export_options.channels.empty() ? ".*" : export_options.channels) {}
 
   void read(const sync::LogIndex& index, int run) {
     const sync::LogOrigin& origin = index.run(run).origin;
@@ -153,7 +153,7 @@ class Export {
     const std::string name(event.channel);
     // The type descriptions of a log and LCM's self test are plain text without a type.
     if (name == sync::kLogTypes || name == "LCM_SELF_TEST") return;
-    if (!std::regex_match(name, selected_)) return;
+    if (!selected_.matches(name)) return;
     const MessageType* const type = type_of(event.data);
     if (type != type_on(name) && type_on(name)) {
       ++broken_;
@@ -189,7 +189,7 @@ class Export {
   }
 
   const ExportOptions& options_;
-  std::regex selected_;
+  sync::Pattern selected_;
   std::map<std::pair<std::string, const MessageType*>, Channel> channels_;
   std::set<std::string> files_ = sync::reserved_table_files();
   std::unique_ptr<Table> tags_;
@@ -208,18 +208,19 @@ int main(int argc, char** argv) try {
   app.add_option("--until", export_options.until_s, "up to this second of the log");
   app.add_flag("--wide", export_options.wide, "a row for each message and a column for each field, without lists, instead of a row for each value");
   sync::parse_or_exit(app, "export_log", argc, argv);
+  std::optional<Export> all;
   try {
-    const sync::ExportedLogs logs(export_options, "export_log");
-    const auto known = [&](int run) { return logs.index().run(run).origin.known; };
-    const std::vector<int> runs = logs.runs();
-    if (std::ranges::none_of(runs, known))
-      throw std::runtime_error(sync::printable(export_options.logs.front()) + " contains no message of Tactus; give the run.lcmlog of a run");
-    Export all(export_options);
-    for (const int run : runs) all.read(logs.index(), run);
-    all.finish(logs.index());
-  } catch (const std::regex_error&) {
+    all.emplace(export_options);
+  } catch (const std::invalid_argument&) {
     throw std::runtime_error("--channels " + sync::printable(export_options.channels) + ": is not a regular expression; write for example 'TOOL_STATE|CONTACT.*'");
   }
+  const sync::ExportedLogs logs(export_options, "export_log");
+  const auto known = [&](int run) { return logs.index().run(run).origin.known; };
+  const std::vector<int> runs = logs.runs();
+  if (std::ranges::none_of(runs, known))
+    throw std::runtime_error(sync::printable(export_options.logs.front()) + " contains no message of Tactus; give the run.lcmlog of a run");
+  for (const int run : runs) all->read(logs.index(), run);
+  all->finish(logs.index());
   return 0;
 } catch (const std::exception& e) {
   return sync::fail("export_log", e);

@@ -27,11 +27,11 @@ using namespace tactus::audio::test;
 
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
-constexpr double kClick = 1e-3;  // -60 dBFS
-constexpr double kCeiling = 0.9;
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
+constexpr double kSpaceClick = 1e-3;  // -60 dBFS
+constexpr double kSpaceCeiling = 0.9;
 
-scene_t rough_scene() {
+scene_t oak_scene() {
   scene_t s = struck_scene();
   s.materials[0] = rough();
   s.materials[0].name = "oak";
@@ -88,7 +88,7 @@ struct NodeBench {
   }
 
   Settings settings;
-  scene_t scene = rough_scene();
+  scene_t scene = oak_scene();
   Database data = database();
   Impacts impacts{scene, [](std::int64_t) -> std::optional<Extent> { return std::nullopt; }, settings, kRate, 1};
   sync::BodyHistory bodies{1};
@@ -133,7 +133,7 @@ Extremes extremes_of(const std::vector<float>& x) {
 std::vector<float> play(const std::string& spatial, const std::string& method, int wild) {
   auto bench = std::make_unique<NodeBench>(spatial, method);
   std::int64_t id = 0, wild_id = 1'000'000;
-  const float bad[] = {kNan, kInf, -kInf, 1e30f, -1e30f};
+  const float bad[] = {kNotANumber, kInfinite, -kInfinite, 1e30f, -1e30f};
   for (int block = 0; block < 400; ++block) {
     if (block % 75 == 0) bench->hit(blow(++id, 1));
     sync::Contacts contacts{stroke(7, 0.1f, 2)};
@@ -191,7 +191,7 @@ TEST_CASE("Many extreme contacts at once give samples below the ceiling in any s
   CAPTURE(e.loudest);
   CHECK(e.finite);
   CHECK(e.loudest > 0.05);
-  CHECK(e.loudest <= static_cast<double>(static_cast<float>(kCeiling)));
+  CHECK(e.loudest <= static_cast<double>(static_cast<float>(kSpaceCeiling)));
   // The decay after it is finite too.
   for (int block = 0; block < 20; ++block) bench->submit_contacts({}), bench->play();
   CHECK(extremes_of(bench->out).finite);
@@ -208,6 +208,6 @@ TEST_CASE("Impossible contacts make no click through ears or loudspeakers by any
   CAPTURE(spatial, method, click, e.loudest);
   CHECK(e.finite);
   CHECK(e.loudest > 0.01);  // something sounds
-  CHECK(e.loudest <= kCeiling);
-  CHECK(click < kClick);
+  CHECK(e.loudest <= kSpaceCeiling);
+  CHECK(click < kSpaceClick);
 }

@@ -15,7 +15,7 @@ struct Rows {
   std::vector<std::string> names;
   std::vector<std::map<std::string, std::string>> rows;
 };
-Rows read(const std::filesystem::path& path) {
+Rows read_rows(const std::filesystem::path& path) {
   Rows out;
   std::ifstream file(path);
   std::string line;
@@ -47,8 +47,8 @@ TEST_CASE("The tables exported from the log of a run agree with its summary") {
   CHECK(schema["foreign_messages"] == 0);
 
   // The table of TOOL_STATE that the run itself wrote, message by message.
-  const Rows own = read(run.out() / "haptic.csv");
-  const Rows tool = read(tables / "TOOL_STATE.csv");
+  const Rows own = read_rows(run.out() / "haptic.csv");
+  const Rows tool = read_rows(tables / "TOOL_STATE.csv");
   CHECK(schema["files"]["TOOL_STATE.csv"]["messages"] == own.rows.size());
   std::vector<double> z;
   for (const auto& row : tool.rows)
@@ -63,7 +63,7 @@ TEST_CASE("The tables exported from the log of a run agree with its summary") {
 
   run.output_of({"env", "TACTUS_BIN=" + programs().string(), (repository() / "scripts/tactus").string(), "export", run.out(),
                  "--out", tables, "--wide", "--channels", "TOOL_STATE", "--since", "1", "--until", "2"});
-  const Rows wide = read(tables / "TOOL_STATE.csv");
+  const Rows wide = read_rows(tables / "TOOL_STATE.csv");
   REQUIRE_FALSE(wide.rows.empty());
   CHECK(wide.rows.size() < own.rows.size());
   for (const auto& row : wide.rows) {

@@ -18,7 +18,7 @@ namespace {
 using Pixels = std::vector<unsigned char>;
 
 // Mean difference of two pictures, of 255.
-double mean_difference(const Pixels& a, const Pixels& b) {
+double mean_colour_difference(const Pixels& a, const Pixels& b) {
   REQUIRE(a.size() == b.size());
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
@@ -91,23 +91,23 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
   const Pixels at_rest = c.picture_at({0, 0, 0}, 0);
   REQUIRE(at_rest.size() == 320 * 240);
   CHECK(*std::max_element(at_rest.begin(), at_rest.end()) > 40);  // the picture is lit
-  CHECK(mean_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);
+  CHECK(mean_colour_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);
   CHECK(c.head_ran);
   CHECK(c.buttons == 5);
   const auto before = c.rates(1);
 
   const Pixels turned = c.picture_at({0, 0, 0}, 0.2), aside = c.picture_at({0, -0.15, 0}, 0);
-  CHECK(mean_difference(at_rest, turned) > 3);
-  CHECK(mean_difference(at_rest, aside) > 3);
-  CHECK(mean_difference(turned, aside) > 3);
-  CHECK(mean_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);  // and back at rest
+  CHECK(mean_colour_difference(at_rest, turned) > 3);
+  CHECK(mean_colour_difference(at_rest, aside) > 3);
+  CHECK(mean_colour_difference(turned, aside) > 3);
+  CHECK(mean_colour_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);  // and back at rest
   c.check_rates_hold(before, 2);
 
   // The device sends no more: the view stays, touch by the other hand continues.
   c.picture_at({0, -0.15, 0}, 0);
   CHECK(c.monitor.wait_until([&] { return c.state("haptic_node_head", node_health_t::OUTPUT_LOST); }, kTimeout_s));
   c.monitor.receive_for(0.5);
-  CHECK(mean_difference(c.picture(), aside) < 0.5);
+  CHECK(mean_colour_difference(c.picture(), aside) < 0.5);
   // Its node is killed.
   c.processes.kill("haptic_node_head");
   const bool reported = c.monitor.wait_until(
@@ -115,14 +115,14 @@ TEST_CASE("A head that a program moves changes the picture and nothing else, and
       kTimeout_s);
   INFO(c.note("visual_node"));
   CHECK(reported);
-  CHECK(mean_difference(c.picture(), aside) < 0.5);
+  CHECK(mean_colour_difference(c.picture(), aside) < 0.5);
   CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
   const std::int64_t hits = c.monitor.hits();
   CHECK(c.monitor.wait_until([&] { return c.monitor.hits() > hits; }, kTimeout_s));
 
   c.start_head();
   CHECK(c.monitor.wait_until([&] { return c.monitor.health("haptic_node_head") != nullptr; }, kTimeout_s));
-  CHECK(mean_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);
+  CHECK(mean_colour_difference(at_rest, c.picture_at({0, 0, 0}, 0)) < 0.5);
   CHECK(c.note("visual_node").find("head") == std::string::npos);
 }
 
@@ -132,8 +132,8 @@ TEST_CASE("A wand that a program moves directs the light to its position, and th
   c.start_head("wand");
   const Pixels middle = c.picture_at({0, 0, 0.05}, 0, "wand");
   const Pixels left = c.picture_at({0, 0.3, 0}, 0, "wand"), right = c.picture_at({0, -0.3, 0}, 0, "wand");
-  CHECK(mean_difference(middle, left) > 1);
-  CHECK(mean_difference(left, right) > 1);
+  CHECK(mean_colour_difference(middle, left) > 1);
+  CHECK(mean_colour_difference(left, right) > 1);
   // The lit half is the one that the head points to: the left of the picture is the left of the camera.
   const auto half = [](const Pixels& p, bool left_half) {
     double sum = 0;
@@ -145,6 +145,6 @@ TEST_CASE("A wand that a program moves directs the light to its position, and th
   CHECK(half(right, false) > half(left, false));
   CHECK(c.monitor.wait_until([&] { return c.state("haptic_node_wand", node_health_t::OUTPUT_LOST); }, kTimeout_s));
   c.monitor.receive_for(0.5);
-  CHECK(mean_difference(c.picture(), right) < 0.5);
+  CHECK(mean_colour_difference(c.picture(), right) < 0.5);
   CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
 }

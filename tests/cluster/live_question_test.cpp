@@ -17,7 +17,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr double kTimeout_s = 60;  // liveness, not speed
+constexpr double kAnswerTimeout_s = 60;  // liveness, not speed
 constexpr std::int64_t kRunId = 4712;
 constexpr const char* kToken = "0123456789abcdef0123";
 constexpr std::int64_t kFirst = 4'611'686'018'427'387'901;  // no double represents it: JavaScript must not use one either
@@ -74,7 +74,7 @@ TEST_CASE(
   std::map<std::int64_t, std::vector<answer_t>> answers;
   std::vector<question_t> remaining = study();
   sync::HostTime next_question_time{};  // time at which the current question was answered
-  const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kTimeout_s);
+  const sync::HostTime end = sync::host_now() + sync::from_seconds(2 * kAnswerTimeout_s);
   for (sync::HostTime next{}; processes.running("browser") && sync::host_now() < end; bus.wait(std::chrono::milliseconds(20))) {
     const sync::HostTime now = sync::host_now();
     bus.drain(now);
@@ -88,7 +88,7 @@ TEST_CASE(
     question_t m = remaining.empty() ? question(kFirst + 5, question_t::NOTHING, "") : remaining.front();
     bus.publish(channels::kQuestion, m);
   }
-  const int status = processes.wait_for_exit("browser", kTimeout_s);
+  const int status = processes.wait_for_exit("browser", kAnswerTimeout_s);
   INFO(processes.output("browser"));
   INFO(processes.output("live_server"));
   CHECK(status == 0);
@@ -102,7 +102,7 @@ TEST_CASE(
     for (const answer_t& a : answers[m.id]) {
       CHECK((a.choice == answers[m.id][0].choice && a.number == answers[m.id][0].number));
       CHECK(a.by == "page");
-      CHECK((a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kTimeout_s * 1e9)));
+      CHECK((a.after_ns > 0 && a.after_ns < static_cast<std::int64_t>(kAnswerTimeout_s * 1e9)));
     }
   }
   CHECK(answers[kFirst][0].choice == -1);

@@ -25,11 +25,11 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kTimeout_s = 60;  // liveness, not speed
+constexpr double kPageTimeout_s = 60;  // liveness, not speed
 
 // The address printed by a program; "": none.
 std::string address_of(Processes& processes, const std::string& name) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kTimeout_s);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(kPageTimeout_s);
   while (std::chrono::steady_clock::now() < end && processes.running(name)) {
     const std::string output = processes.output(name);
     const std::size_t from = output.find("http://127.0.0.1:");
@@ -52,7 +52,7 @@ void run_browser_test(RunScript& run, const std::string& test, const std::vector
   std::vector<std::string> command{"node", (repository() / "scripts/live/page/test" / test).string()};
   command.insert(command.end(), arguments.begin(), arguments.end());
   run.processes.spawn(test, command);
-  const int status = run.processes.wait_for_exit(test, 9 * kTimeout_s);
+  const int status = run.processes.wait_for_exit(test, 9 * kPageTimeout_s);
   INFO(run.processes.output(test));
   INFO(run.processes.output("run"));
   INFO(contents(run.out() / "logs/live_server.log"));
@@ -276,7 +276,7 @@ TEST_CASE(
                               seen_file = run.folder.path() / "seen.json";
   run_browser_test(run, "run.test.mjs", {address, marks_file});
   run.processes.signal("run", SIGINT);
-  CHECK(run.finish(kTimeout_s) >= 0);
+  CHECK(run.finish(kPageTimeout_s) >= 0);
 
   const Marks marks{json::parse(contents(marks_file))};
   const RunLog log(run.out());
@@ -304,5 +304,5 @@ TEST_CASE(
     CHECK(place["sim_ns"].get<double>() == Approx(expected).margin(60e6));
   }
   run.processes.signal("open", SIGTERM);
-  CHECK(run.processes.wait_for_exit("open", kTimeout_s) >= 0);
+  CHECK(run.processes.wait_for_exit("open", kPageTimeout_s) >= 0);
 }

@@ -1,15 +1,15 @@
 // Runs each test in its own network and process namespaces, so that it cannot receive from or disturb other programs. No process of a test
 // survives it, however the test ends.
-#define CATCH_CONFIG_RUNNER
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
+
+#include "tests/run_tests.h"
 
 namespace {
 
@@ -59,5 +59,5 @@ int enter(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (!only_lists(argc, argv) && !getenv(kInside)) return enter(argc, argv);
-  return Catch::Session().run(argc, argv);
+  return tactus::run_tests(argc, argv);
 }

@@ -1,8 +1,7 @@
 // Tests of the spy on the bus of a running cluster, in a terminal.
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "tests/cluster/support/run_script.h"
 #include "tests/cluster/support/running.h"
 
 using namespace tactus;
@@ -10,13 +9,6 @@ using namespace tactus::cluster;
 using nlohmann::json;
 
 namespace {
-
-std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 const json& channel(const json& all, const std::string& name) {
   for (const json& c : all["channels"])

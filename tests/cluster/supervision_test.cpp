@@ -10,7 +10,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-constexpr double kTimeout_s = 60;
+constexpr double kRestartTimeout_s = 60;
 
 // The id of the started run, once it has a recorder. Fails the test with the run's output when there is none in time.
 std::int64_t run_id_of(RunScript& run) {
@@ -37,7 +37,7 @@ TEST_CASE("DEGRADE-4: every killed node rejoins by itself") {
     return std::all_of(kNodes.begin(), kNodes.end(),
                        [&](const auto& n) { return monitor.in_state(n, node_health_t::RUNNING); });
   };
-  const bool alive = monitor.wait_until(all_running, kTimeout_s);
+  const bool alive = monitor.wait_until(all_running, kRestartTimeout_s);
   INFO(run.processes.output("run"));
   REQUIRE(alive);
 
@@ -46,15 +46,15 @@ TEST_CASE("DEGRADE-4: every killed node rejoins by itself") {
   for (const std::string& node : nodes) {
     INFO(node);
     run.output_of({"sv", "kill", run.out() / "cluster/services" / node});
-    REQUIRE(monitor.wait_until([&] { return monitor.rejoined(node) == 1; }, kTimeout_s));
-    REQUIRE(monitor.wait_until(all_running, kTimeout_s));
+    REQUIRE(monitor.wait_until([&] { return monitor.rejoined(node) == 1; }, kRestartTimeout_s));
+    REQUIRE(monitor.wait_until(all_running, kRestartTimeout_s));
   }
   const std::int64_t hits = monitor.hits();
-  CHECK(monitor.wait_until([&] { return monitor.hits() > hits; }, kTimeout_s));
+  CHECK(monitor.wait_until([&] { return monitor.hits() > hits; }, kRestartTimeout_s));
   for (const std::string& node : nodes) CHECK(monitor.rejoined(node) == 1);
 
   run.processes.signal("run", SIGINT);
-  run.finish(kTimeout_s);
+  run.finish(kRestartTimeout_s);
   const auto summary = nlohmann::json::parse(contents(run.out() / "summary.json"), nullptr, false);
   INFO(run.processes.output("run"));
   REQUIRE_FALSE(summary.is_discarded());
@@ -70,7 +70,7 @@ TEST_CASE("A node that dies repeatedly stays lost and is named, and the others c
   run.start(
       {tapping_scene(), "--seconds", "14", "--network", "host", "--without", "visual_node", "--out", run.out()});
   ClusterMonitor monitor(run_id_of(run));
-  REQUIRE(monitor.wait_until([&] { return monitor.in_state("thermal_node", node_health_t::RUNNING); }, kTimeout_s));
+  REQUIRE(monitor.wait_until([&] { return monitor.in_state("thermal_node", node_health_t::RUNNING); }, kRestartTimeout_s));
   const std::filesystem::path service = run.out() / "cluster/services/thermal_node";
   for (int i = 0; i < 200 && !std::filesystem::exists(service / "lost"); ++i) {
     run.processes.spawn("sv", {"sv", "kill", service});
@@ -80,7 +80,7 @@ TEST_CASE("A node that dies repeatedly stays lost and is named, and the others c
   CHECK(contents(service / "lost").find("left down") != std::string::npos);
   CHECK(monitor.in_state("haptic_node", node_health_t::RUNNING));
   CHECK(monitor.in_state("audio_node", node_health_t::RUNNING));
-  CHECK(run.finish(kTimeout_s) == 1);
+  CHECK(run.finish(kRestartTimeout_s) == 1);
   CHECK(run.processes.output("run").find("thermal_node: could not be kept running") != std::string::npos);
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("tactus attach runs a command in the network of the cluster") {
   for (int i = 0; i < 600 && !std::filesystem::exists(deaths); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   run.processes.signal("run", SIGINT);
-  run.finish(kTimeout_s);
+  run.finish(kRestartTimeout_s);
   CHECK(run.processes.output("run").find("thermal_node died once") != std::string::npos);
   run.output_of({tactus, "attach", run.out(), "true"}, 1);
 }

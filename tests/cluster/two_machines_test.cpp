@@ -11,7 +11,7 @@ using namespace tactus::cluster;
 
 namespace {
 
-std::vector<std::string> without(const std::string& node) {
+std::vector<std::string> others_than(const std::string& node) {
   std::vector<std::string> rest = kNodes;
   std::erase(rest, node);
   return rest;
@@ -29,7 +29,7 @@ TEST_CASE("DEGRADE-1 on two machines: with audio_node stopped on the other machi
   for (const std::string& sense : kModalityNodes) rendered[sense] = m.monitor().rendered(sense);
   m.running->check_rates_hold(before, 3, "audio_node");
   CHECK(m.monitor().wait_until([&] { return m.monitor().health("audio_node") == nullptr; }, kTimeout_s));
-  CHECK(m.monitor().wait_until([&] { return m.running->all_running(without("audio_node")); }, kTimeout_s));
+  CHECK(m.monitor().wait_until([&] { return m.running->all_running(others_than("audio_node")); }, kTimeout_s));
   for (const char* sense : {"haptic_node", "visual_node", "thermal_node"}) {
     INFO(sense);
     CHECK(m.monitor().wait_until([&] { return m.monitor().rendered(sense) > rendered.at(sense); }, kTimeout_s));

@@ -5,16 +5,16 @@
 #include <tactus/question_t.hpp>
 
 #include "lcmtypes/valid.h"
+#include "tests/live/live_time.h"
 #include "tests/sync/support/memory_sink.h"
 
 using namespace tactus;
 using namespace tactus::live;
+using tactus::test::at;
 
 namespace {
 
 constexpr std::int64_t kBig = 4'611'686'018'427'387'901;  // no double represents it
-
-sync::HostTime at(double s) { return sync::host_time(10'000'000'000) + sync::from_seconds(s); }
 
 question_t question(int kind, std::int64_t seq = 0, std::int64_t id = kBig, std::int64_t run = 7) {
   question_t m{};

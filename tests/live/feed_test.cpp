@@ -8,18 +8,18 @@
 #include <tactus/node_health_t.hpp>
 #include <tactus/presented_t.hpp>
 
+#include "tests/live/live_time.h"
 #include "tests/sync/support/memory_sink.h"
 
 using namespace tactus;
 using namespace tactus::live;
 using nlohmann::json;
+using tactus::test::at;
 
 namespace {
 
 constexpr std::int64_t kRun = 7;
 constexpr std::int64_t kMs = 1'000'000;
-
-sync::HostTime at(double s) { return sync::host_time(10'000'000'000) + sync::from_seconds(s); }
 
 contact_events_t hit(std::int64_t id, double sim_ms, std::int64_t run = kRun) {
   contact_events_t m{};

@@ -7,16 +7,17 @@
 #include <tactus/scene_t.hpp>
 
 #include "lcmtypes/vectors.h"
+#include "tests/live/live_time.h"
 
 using namespace tactus;
 using namespace tactus::live;
 using Eigen::Vector3d;
+using tactus::test::at;
 
 namespace {
 
 constexpr double kAspect = 4.0 / 3;
 
-sync::HostTime at(double s) { return sync::host_time(10'000'000'000) + sync::from_seconds(s); }
 scene_t scene(const Eigen::Isometry3d& camera = Eigen::Isometry3d::Identity(), double fov_rad = EIGEN_PI / 2) {
   scene_t s{};
   s.camera = to_pose(camera);

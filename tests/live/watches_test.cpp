@@ -8,14 +8,14 @@
 #include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/channels.h"
+#include "tests/live/live_time.h"
 #include "tests/sync/support/memory_sink.h"
 
 using namespace tactus;
 using namespace tactus::live;
+using tactus::test::at;
 
 namespace {
-
-sync::HostTime at(double s) { return sync::host_time(10'000'000'000) + sync::from_seconds(s); }
 
 std::vector<std::uint8_t> tool(const std::string& node, double force_N) {
   tool_state_t m{};

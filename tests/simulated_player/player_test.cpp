@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kStep_s = 1e-3;
+constexpr double kPlayerStep_s = 1e-3;
 constexpr double kHand_m = 0.008;
 
 Rules one_ball() { return {.goals = {{.body = 4, .hole_m = {0.15, 0, 0}, .hole_radius_m = 0.03, .ball_radius_m = 0.025}}, .hand_radius_m = kHand_m}; }
@@ -27,7 +27,7 @@ struct ToyWorld {
 
   // True when all balls are in their holes within `seconds` of simulated time.
   bool play(double seconds, const std::function<void(Percept&)>& sense = [](Percept&) {}) {
-    for (const double end = time_s + seconds; time_s < end; time_s += kStep_s) {
+    for (const double end = time_s + seconds; time_s < end; time_s += kPlayerStep_s) {
       Percept p;
       p.time_s = time_s, p.hand_m = hand, p.force_N = force;
       for (const Vector3d& ball : balls) p.balls_m.emplace_back(ball);
@@ -98,7 +98,7 @@ TEST_CASE("The hand keeps its speed limit for any percepts") {
   Vector3d last = toy.hand;
   double fastest = 0;
   toy.play(20, [&](Percept& p) {
-    fastest = std::max(fastest, (p.hand_m - last).norm() / kStep_s);
+    fastest = std::max(fastest, (p.hand_m - last).norm() / kPlayerStep_s);
     last = p.hand_m;
     if (static_cast<int>(p.time_s * 10) % 3 == 0) p.balls_m[0] = Vector3d(0.3, -0.3, 0.025);  // the ball seems to jump
   });

@@ -5,8 +5,11 @@
 #include <tactus/answer_t.hpp>
 #include <tactus/question_t.hpp>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::trial_runner;
+using tactus::test::at_ms;
 
 namespace {
 
@@ -18,26 +21,24 @@ question_t choice(int count) {
   return q;
 }
 
-sync::HostTime ms(std::int64_t t) { return sync::host_time(t * 1'000'000); }
-
 }  // namespace
 
 TEST_CASE("A question is published at once and every 200 ms until it is answered") {
   Interview interview(1);
   interview.ask(choice(2));
-  const auto first = interview.step(ms(1000));
+  const auto first = interview.step(at_ms(1000));
   REQUIRE(first);
-  CHECK_FALSE(interview.step(ms(1100)));
-  const auto again = interview.step(ms(1200));
+  CHECK_FALSE(interview.step(at_ms(1100)));
+  const auto again = interview.step(at_ms(1200));
   REQUIRE(again);
   CHECK(again->id == first->id);
-  const auto a = interview.answer(1, 0, "button", ms(1300));
+  const auto a = interview.answer(1, 0, "button", at_ms(1300));
   REQUIRE(a);
   CHECK(a->after_ns == 300'000'000);
   REQUIRE(interview.accept(*a));
   CHECK_FALSE(interview.accept(*a));
   CHECK_FALSE(interview.is_open());
-  const auto nothing = interview.step(ms(1301));
+  const auto nothing = interview.step(at_ms(1301));
   REQUIRE(nothing);
   CHECK(nothing->kind == question_t::NOTHING);
   CHECK(nothing->trial == 5);
@@ -47,22 +48,22 @@ TEST_CASE("A question is published at once and every 200 ms until it is answered
 TEST_CASE("An answer to another question, or with an unknown choice, is rejected") {
   Interview interview(1);
   interview.ask(choice(2));
-  interview.step(ms(0));
-  answer_t a = *interview.answer(0, 0, "key", ms(10));
+  interview.step(at_ms(0));
+  answer_t a = *interview.answer(0, 0, "key", at_ms(10));
   ++a.id;
   CHECK_FALSE(interview.accept(a));
   --a.id, a.choice = 2;
   CHECK_FALSE(interview.accept(a));
   a.choice = -1;
   CHECK_FALSE(interview.accept(a));
-  CHECK_FALSE(interview.answer(2, 0, "button", ms(20)));
+  CHECK_FALSE(interview.answer(2, 0, "button", at_ms(20)));
   CHECK(interview.is_open());
 }
 
 TEST_CASE("A question cannot be answered before it is published") {
   Interview interview(1);
   interview.ask(choice(2));
-  CHECK_FALSE(interview.answer(0, 0, "button", ms(0)));
+  CHECK_FALSE(interview.answer(0, 0, "button", at_ms(0)));
 }
 
 TEST_CASE("A number out of range is rejected") {
@@ -70,10 +71,10 @@ TEST_CASE("A number out of range is rejected") {
   question_t q{};
   q.kind = question_t::NUMBER, q.text = "How warm?", q.lowest = 20, q.highest = 40, q.step = 0.5;
   interview.ask(q);
-  interview.step(ms(0));
-  CHECK_FALSE(interview.accept(*interview.answer(0, 19, "page", ms(1))));
-  CHECK_FALSE(interview.accept(*interview.answer(0, NAN, "page", ms(1))));
-  CHECK(interview.accept(*interview.answer(0, 40, "page", ms(1))));
+  interview.step(at_ms(0));
+  CHECK_FALSE(interview.accept(*interview.answer(0, 19, "page", at_ms(1))));
+  CHECK_FALSE(interview.accept(*interview.answer(0, NAN, "page", at_ms(1))));
+  CHECK(interview.accept(*interview.answer(0, 40, "page", at_ms(1))));
 }
 
 TEST_CASE("A question without a possible answer is rejected, and the previous question stays") {

@@ -7,7 +7,7 @@
 namespace tactus::visual {
 namespace {
 
-constexpr std::uint64_t kBeginning = 0b0110;
+constexpr std::uint64_t kMotionBeginning = 0b0110;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void append_motion_marker(std::vector<Rect>& overlay, std::uint32_t frame, std::
     const std::uint64_t tool = static_cast<std::uint64_t>(samples[i].tool) & 0xf;
     const std::uint64_t sample = static_cast<std::uint64_t>(samples[i].seq) & 0xfffffff;
     const std::uint64_t payload = std::uint64_t{frame & 0xffffff} << 32 | tool << 28 | sample;
-    append_row(overlay, encode_row(kBeginning, payload), kMarkerRows + static_cast<int>(i), height);
+    append_row(overlay, encode_row(kMotionBeginning, payload), kMarkerRows + static_cast<int>(i), height);
   }
 }
 

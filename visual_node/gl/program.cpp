@@ -3,7 +3,8 @@
 #include <epoxy/gl.h>
 
 #include <array>
-#include <regex>
+#include <cctype>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -17,21 +18,43 @@ namespace {
 // in some of its messages only.
 constexpr std::size_t kLinesOfPiece = 100'000;  // more than the lines of a file of 64 kB
 
+// The line number in a driver's message, and the text behind it.
+struct Position {
+  std::size_t line, end;
+};
+
 // Drivers begin a message with "0:12(5): " (Mesa) or "0(12) : " (NVIDIA) or "ERROR: 0:12: ": piece number and line.
+std::optional<Position> position_in(const std::string& message) {
+  std::size_t i = message.starts_with("ERROR: ") ? 7 : 0;
+  const auto digits = [&] {
+    const std::size_t first = i;
+    while (i < message.size() && std::isdigit(static_cast<unsigned char>(message[i]))) ++i;
+    return message.substr(first, i - first);
+  };
+  const auto skip = [&](const char* any) { return i < message.size() && std::string_view(any).find(message[i]) != std::string_view::npos && ++i; };
+  if (digits().empty() || !skip(":(")) return std::nullopt;
+  const std::string number = digits();
+  if (number.empty()) return std::nullopt;
+  skip(")");
+  if (skip("(")) digits(), skip(")");
+  while (skip(" \t")) {
+  }
+  if (!skip(":")) return std::nullopt;
+  return Position{std::stoul(number.substr(0, 9)), i};
+}
+
 // Each error becomes one clause; after the first few only their count is given, since they usually follow from the
 // first. Warnings are left out, since inputs are assigned before use.
 constexpr int kMaxClauses = 3;  // design: readable at a glance
 std::string with_files(const std::string& log, const std::vector<std::string>& names) {
-  static const std::regex position(R"(^(?:ERROR: )?\d+[:(](\d+)\)?(?:\(\d+\))?\s*:)");
   std::string text, line;
   int clauses = 0;
   for (std::istringstream lines(log.c_str()); std::getline(lines, line);) {
     if (line.empty() || line.find(": warning") != std::string::npos || ++clauses > kMaxClauses) continue;
-    if (std::smatch found; std::regex_search(line, found, position)) {
-      const auto number = static_cast<std::size_t>(std::stoul(found[1].str().substr(0, 9)));
-      const std::size_t piece = number / kLinesOfPiece;
-      line = (piece < names.size() ? names[piece] : "?") + ":" + std::to_string(number % kLinesOfPiece) + ":" +
-             found.suffix().str();
+    if (const auto found = position_in(line)) {
+      const std::size_t piece = found->line / kLinesOfPiece;
+      line = (piece < names.size() ? names[piece] : "?") + ":" + std::to_string(found->line % kLinesOfPiece) + ":" +
+             line.substr(found->end);
     }
     text += (text.empty() ? "" : "; ") + line;
   }

@@ -13,7 +13,7 @@ namespace {
 
 // Names of looks that phong.frag draws, when the look has the maps or the mirror.
 constexpr std::array<std::string_view, 3> kPhongAliases{"normal_mapped", "textured", "reflecting"};
-constexpr const char* kNames =
+constexpr const char* kShaderNames =
     "phong, gouraud, normal_mapped, textured, reflecting; passes greyscale, blur, edges";
 
 std::string base_name(const std::string& file) { return std::filesystem::path(file).filename().string(); }
@@ -58,7 +58,7 @@ ShaderPiece ShaderLibrary::source_file(const std::string& file) const {
 }
 
 std::string ShaderLibrary::names() const {
-  std::string all = kNames;
+  std::string all = kShaderNames;
   for (const ShaderText& s : scene_shaders_) all += ", " + s.name;
   return all;
 }

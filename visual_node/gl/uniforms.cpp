@@ -8,7 +8,7 @@ namespace tactus::visual {
 namespace {
 
 constexpr std::array<unsigned, 4> kTypes{GL_FLOAT, GL_FLOAT_VEC2, GL_FLOAT_VEC3, GL_FLOAT_VEC4};
-constexpr std::array<const char*, 4> kNames{"a float", "a vec2", "a vec3", "a vec4"};
+constexpr std::array<const char*, 4> kTypeNames{"a float", "a vec2", "a vec3", "a vec4"};
 
 }  // namespace
 
@@ -33,7 +33,7 @@ std::vector<std::string> uniform_mismatches(const ShaderLibrary& library, const 
     glGetActiveUniformsiv(program.id(), 1, &index, GL_UNIFORM_TYPE, &type);
     const auto given = static_cast<std::size_t>(u.count - 1);
     if (static_cast<unsigned>(type) != kTypes[given])
-      sentences.push_back("uniform " + u.name + " of shader " + shader + " is not " + kNames[given] + ", and " +
+      sentences.push_back("uniform " + u.name + " of shader " + shader + " is not " + kTypeNames[given] + ", and " +
                      std::to_string(u.count) + (u.count == 1 ? " number is" : " numbers are") +
                      " given; it is ignored");
   }

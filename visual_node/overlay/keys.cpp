@@ -9,7 +9,7 @@ struct Key {
   KeyAction action;
   const char* description;
 };
-constexpr Key kKeys[] = {
+constexpr Key kKeyTable[] = {
     {' ', "space", {Action::kPauseOrResume}, "pause, resume"},
     {'.', ".", {Action::kStep}, "one step of 1 ms"},
     {'R', "R", {Action::kReset}, "restart"},
@@ -30,14 +30,14 @@ constexpr Key kKeys[] = {
 }  // namespace
 
 std::optional<KeyAction> action_of(int key) {
-  for (const Key& k : kKeys)
+  for (const Key& k : kKeyTable)
     if (k.key == key) return k.action;
   return std::nullopt;
 }
 
 std::vector<std::string> help_lines() {
   std::vector<std::string> lines;
-  for (const Key& k : kKeys)
+  for (const Key& k : kKeyTable)
     lines.push_back(std::string(k.name) + std::string(8 - std::string(k.name).size(), ' ') + k.description);
   lines.emplace_back("mouse   left button aims the lamp");
   return lines;

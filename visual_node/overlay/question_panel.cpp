@@ -23,7 +23,7 @@ void fill(std::vector<Rect>& overlay, float x, float y, float width, float heigh
   overlay.push_back({x, y, width, height, c.x(), c.y(), c.z(), alpha});
 }
 
-std::size_t letters_in(float width, float size) {
+std::size_t letters_across(float width, float size) {
   return static_cast<std::size_t>(std::max(1.0f, std::floor((width / size + 1) / (kGlyphWidth + 1))));
 }
 float width_of(std::size_t letters, float size) {
@@ -42,19 +42,19 @@ class Layout {
   Layout(const question_t& m, double number, float width, float size, float leading)
       : m_(m), number_(number), size_(size), small_(std::max(1.0f, size - 1)), leading_(leading) {
     inner_ = width - 2 * kPadding * size_;
-    text_ = wrap_text(m.text, letters_in(inner_, size_));
+    text_ = wrap_text(m.text, letters_across(inner_, size_));
     if (m.kind == question_t::CHOICE)
       for (const std::string& c : m.choices)
-        choices_.push_back(wrap_text(c, letters_in(inner_ - kChoiceIndent * size_, size_)));
+        choices_.push_back(wrap_text(c, letters_across(inner_ - kChoiceIndent * size_, size_)));
     if (m.kind == question_t::NUMBER) {
       const std::string low = m.count == 2 ? m.choices[0] : number_text(m.lowest, m.step),
                         high = m.count == 2 ? m.choices[1] : number_text(m.highest, m.step);
       for (const std::string& end : {low, high})
-        ends_.push_back(wrap_text(end, letters_in(inner_ / 2 - 4 * size_, size_)));
+        ends_.push_back(wrap_text(end, letters_across(inner_ / 2 - 4 * size_, size_)));
     }
-    foot_ = wrap_text(hint(m), letters_in(inner_, small_));
+    foot_ = wrap_text(hint(m), letters_across(inner_, small_));
     if (!m.progress.empty()) {
-      const auto progress = wrap_text(m.progress, letters_in(inner_, small_));
+      const auto progress = wrap_text(m.progress, letters_across(inner_, small_));
       foot_.insert(foot_.end(), progress.begin(), progress.end());
     }
   }

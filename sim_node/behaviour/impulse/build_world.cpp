@@ -5,13 +5,12 @@
 #include <stdexcept>
 
 #include "sim_node/model/behaviour_model.h"
+#include "sim_node/model/index.h"
 
 namespace tactus::sim::impulse {
 namespace {
 
 using articulated::LinkDef;
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // kShell_m: surfaces meet at this gap, so that residuals of the sweeps are not overlaps. Design value: equal to
 // the allowed overlap, 10 um. kSlack_m: the part that is not corrected, a fifth, above the rounding of detectors.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "sim_node/model/index.h"
+
 namespace tactus::sim::impulse {
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 int axis_of(bool swapped, int axis) { return swapped ? 1 - axis : axis; }
 

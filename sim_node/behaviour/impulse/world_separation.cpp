@@ -9,7 +9,7 @@ namespace {
 
 // Maximum sweeps over all contacts, and the change at which they end, m: a hundredth of the overlap that may
 // remain.
-constexpr int kMaxSweeps = 200;
+constexpr int kMaxSeparationSweeps = 200;
 constexpr double kSettled_m = 1e-7;
 
 }  // namespace
@@ -119,7 +119,7 @@ void World::separate(std::span<const Manifold> contacts, double max_overlap_m) {
   update_inertia(contacts);
   build_rows(contacts, 1);
   // Velocities over one second: the smallest change, weighted by inertia, that leaves no overlap.
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMaxSeparationSweeps; ++sweep) {
     double change = 0;
     for (ContactPoint& p : rows_.points) {
       if (p.gap_m < -max_overlap_m) continue;

@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMaxRaw = 64;
+constexpr std::size_t kMaxFclContacts = 64;
 
 class FclDetector : public Detector {
  public:
@@ -53,7 +53,7 @@ class FclDetector : public Detector {
       out.push_back(p);
       return;
     }
-    fcl::CollisionRequestd collide(kMaxRaw, true);
+    fcl::CollisionRequestd collide(kMaxFclContacts, true);
     collide.gjk_solver_type = fcl::GJKSolverType::GST_INDEP;
     fcl::CollisionResultd touching;
     fcl::collide(&ga, pose_a, &gb, pose_b, collide, touching);

@@ -17,12 +17,9 @@ namespace {
 
 using Eigen::Isometry3d;
 
-// The same share as in the detector "layers".
-constexpr double kMargin = 0.2;
-
 bool has_triangles(ShapeKind k) { return k == ShapeKind::kMesh || k == ShapeKind::kHeightfield; }
 
-struct Shape {
+struct GapShape {
   ShapeKind kind;
   bool half_space = false;
   gaps::Convex convex;
@@ -60,7 +57,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
     ShapeDef solid = shape;
     if (plane && !fixed) solid.kind = ShapeKind::kBox, solid.size_m = 2 * convex.half_m;
     auto tree = meshed ? trees_->triangles(shape, world) : nullptr;
-    Shape s{solid.kind, plane && fixed, convex, Isometry3d::Identity(), {solid, tree}, tree, nullptr};
+    GapShape s{solid.kind, plane && fixed, convex, Isometry3d::Identity(), {solid, tree}, tree, nullptr};
     if (plane) s.offset = gaps::plate_offset();
     // A box is also needed as triangles when the world has meshes or heightfields.
     const bool box = convex.core == gaps::Core::kBox && !(world.meshes.empty() && world.heightfields.empty());
@@ -76,7 +73,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   void query(int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b, double reach_m,
              std::vector<PointPair>& out) override {
     out.clear();
-    const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
+    const GapShape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     const bool swapped = rank(sa) > rank(sb);
     if (swapped)
       ordered(sb, pose_b, sa, pose_a, reach_m, out);
@@ -87,9 +84,9 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   }
 
   void prepare_nearest_first(int a, int b) override {
-    Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
+    GapShape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     if (!default_modes_ || !has_triangles(sa.kind) || !has_triangles(sb.kind)) return;
-    for (Shape* s : {&sa, &sb}) {
+    for (GapShape* s : {&sa, &sb}) {
       auto& cones = cones_[s->layers.get()];
       if (!cones) cones = std::make_shared<const gaps::NormalCones>(s->layers->tree);
       s->cones = cones;
@@ -98,7 +95,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
 
   bool nearest_first(int a, const Isometry3d& pose_a, int b, const Isometry3d& pose_b, double reach_m,
                      PairVisitor& visitor, std::vector<PointPair>& scratch) override {
-    const Shape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
+    const GapShape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     if (!sa.cones || !sb.cones) return false;
     nearest_.find({*sa.tree, *sa.layers, *sa.cones, pose_a}, {*sb.tree, *sb.layers, *sb.cones, pose_b}, reach_m,
                   visitor, scratch);
@@ -112,13 +109,13 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   }
 
  private:
-  static int rank(const Shape& s) {
+  static int rank(const GapShape& s) {
     if (s.kind == ShapeKind::kSphere) return 0;
     if (s.half_space) return 1;
     return has_triangles(s.kind) ? 3 : 2;
   }
 
-  void ordered(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
+  void ordered(const GapShape& a, const Isometry3d& pose_a, const GapShape& b, const Isometry3d& pose_b, double reach_m,
                std::vector<PointPair>& out) {
     if (a.kind == ShapeKind::kSphere) return ball(a.convex.round_m, pose_a.translation(), b, pose_b, reach_m, out);
     if (a.half_space && b.half_space) return;
@@ -138,7 +135,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   }
 
   // The other end of a tilted capsule may land within the same step.
-  void ends(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b, double reach_m,
+  void ends(const GapShape& a, const Isometry3d& pose_a, const GapShape& b, const Isometry3d& pose_b, double reach_m,
             std::vector<PointPair>& out) {
     if (a.kind != ShapeKind::kCapsule) return;
     for (const double side : {-1.0, 1.0})
@@ -151,7 +148,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
     p.normal = -p.normal;
   }
 
-  void ball(double r, const Eigen::Vector3d& middle, const Shape& b, const Isometry3d& pose_b, double reach_m,
+  void ball(double r, const Eigen::Vector3d& middle, const GapShape& b, const Isometry3d& pose_b, double reach_m,
             std::vector<PointPair>& out) {
     const Isometry3d pose = b.half_space || has_triangles(b.kind) ? pose_b : pose_b * b.offset;
     b.surface.query(pose.inverse(Eigen::Isometry) * middle, reach_m + r, planes_);
@@ -166,11 +163,11 @@ class GapsDetector : public Detector, public NearestFirstDetector {
     }
   }
 
-  void triangles(const Shape& a, const Isometry3d& pose_a, const Shape& b, const Isometry3d& pose_b,
+  void triangles(const GapShape& a, const Isometry3d& pose_a, const GapShape& b, const Isometry3d& pose_b,
                  double reach_m, std::vector<PointPair>& out) {
     const bool box = !has_triangles(a.kind);
     const Isometry3d at = box ? pose_a * a.offset : pose_a;
-    contact_.query(*a.layers, at, *b.layers, pose_b, {reach_m, kMargin * reach_m}, found_);
+    contact_.query(*a.layers, at, *b.layers, pose_b, {reach_m, kEqualShare * reach_m}, found_);
     if (found_.pierced && box) return gaps::convex_mesh(a.convex, at, *b.tree, pose_b, reach_m, out);
     for (PointPair& p : found_.pairs) {
       const Triangle &of_a = a.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_a)],
@@ -188,7 +185,7 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   MeshContact contact_;
   gaps::MeshNearest nearest_;
   bool default_modes_;  // false when another mode of layers 2 and 3 is selected for comparison
-  std::vector<Shape> shapes_;
+  std::vector<GapShape> shapes_;
   std::map<const ContactMesh*, std::shared_ptr<const gaps::NormalCones>> cones_;  // one per mesh, like its tree
   std::vector<SurfacePlane> planes_;
   MeshContactResult found_;

@@ -7,8 +7,6 @@
 namespace tactus::sim {
 namespace {
 
-// Share of the tolerance below which two distances count as equal. I-Touch's example uses 2 of 10.
-constexpr double kMargin = 0.2;
 class LayersDetector : public Detector {
  public:
   LayersDetector(const MeshContactOptions& options, std::shared_ptr<MeshTrees> trees)
@@ -34,7 +32,7 @@ class LayersDetector : public Detector {
   void query(int a, const Eigen::Isometry3d& pose_a, int b, const Eigen::Isometry3d& pose_b, double reach_m,
              std::vector<PointPair>& out) override {
     contact_.query(*meshes_[static_cast<std::size_t>(a)], pose_a, *meshes_[static_cast<std::size_t>(b)], pose_b,
-                   {reach_m, kMargin * reach_m}, found_);
+                   {reach_m, kEqualShare * reach_m}, found_);
     out.assign(found_.pairs.begin(), found_.pairs.end());
   }
 

@@ -11,6 +11,9 @@
 
 namespace tactus::sim {
 
+// Share of the tolerance below which two distances count as equal. I-Touch's example uses 2 of 10.
+inline constexpr double kEqualShare = 0.2;
+
 // Not thread-safe, and for one world only. Any number of threads may use the returned trees.
 class MeshTrees {
  public:

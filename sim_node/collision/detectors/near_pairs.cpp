@@ -4,14 +4,13 @@
 #include <limits>
 
 #include "sim_node/collision/gaps/convex.h"
+#include "sim_node/model/index.h"
 
 namespace tactus::sim {
 
 using Eigen::Vector3d;
 
 namespace {
-
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 // Maximum length of a chain of impacts in which each body is hit by the one before. Design value: beyond it most of
 // the impact is spent.

@@ -14,7 +14,7 @@ namespace {
 
 // Tolerance of the inside test, m: a thousand times the rounding of a metre.
 constexpr double kOver_m = 1e-12;
-constexpr double kSamePosition_m = 1e-9;
+constexpr double kSameCorner_m = 1e-9;
 // Lines below this angle are parallel when neither figure is a face. Sine.
 constexpr double kParallel = 0.05;
 // Parallel lines face each other when their lateral distance is at most this, m. On round sides with a radius of 20
@@ -82,7 +82,7 @@ struct Collector {
     if (hb - ha > reach_m) return;
     // A corner that lies on an edge or on a corner is detected several times.
     for (int i = 0; i < out.count; ++i)
-      if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kSamePosition_m * kSamePosition_m) return;
+      if ((places[static_cast<std::size_t>(i)] - p).squaredNorm() < kSameCorner_m * kSameCorner_m) return;
     if (out.count < FacingPoints::kMax) places[static_cast<std::size_t>(out.count)] = p;
     const Vector3d flat = p.x() * a.u + p.y() * a.v;
     out.add({flat + ha * a.n, flat + hb * a.n, hb - ha});

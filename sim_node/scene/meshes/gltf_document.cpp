@@ -18,7 +18,7 @@ using nlohmann::json;
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian, and is read as it lies");
 
 // Limits for the JSON: each value uses about 50 bytes of memory, even a short one (design).
-constexpr int kMaxDepth = 64;
+constexpr int kMaxJsonDepth = 64;
 constexpr std::size_t kMaxValues = 4'000'000;
 
 // Component types of glTF 2.0, 3.6.2.2, and their sizes in bytes.
@@ -136,7 +136,7 @@ GltfDocument::GltfDocument(const std::filesystem::path& file, const sync::Readab
   const std::string text = packed ? unpack(bytes, binary_) : std::string(bytes.begin(), bytes.end());
   std::size_t values = 0;
   const auto bounded = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kMaxDepth || ++values > kMaxValues)
+    if (depth > kMaxJsonDepth || ++values > kMaxValues)
       throw std::runtime_error("its JSON is too deep or has too many values");
     return true;
   };

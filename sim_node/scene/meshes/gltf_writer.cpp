@@ -13,8 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kUnsignedInt = 5125, kFloat = 5126, kArrayBuffer = 34962,
-              kElementArrayBuffer = 34963;  // glTF 2.0, 3.6 and 5.11
+constexpr int kIndexType = 5125, kNumberType = 5126;  // unsigned int and float; glTF 2.0, 3.6.2.2
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;      // 3.6 and 5.11
 
 json colour(const Eigen::Vector3f& c) { return json::array({c.x(), c.y(), c.z()}); }
 
@@ -37,7 +37,7 @@ struct Writer {
                    std::size_t element_bytes) {
     json accessor = {{"componentType", component}, {"count", count}, {"type", type}};
     accessor["bufferView"] =
-        add_view(data, count * element_bytes, component == kFloat ? kArrayBuffer : kElementArrayBuffer);
+        add_view(data, count * element_bytes, component == kNumberType ? kArrayBuffer : kElementArrayBuffer);
     document["accessors"].push_back(accessor);
     return static_cast<int>(document["accessors"].size()) - 1;
   }
@@ -47,7 +47,7 @@ struct Writer {
     std::vector<float> flat;
     for (const auto& v : list) flat.insert(flat.end(), v.data(), v.data() + N);
     const char* type = N == 2 ? "VEC2" : N == 3 ? "VEC3" : "VEC4";
-    return add_accessor(flat.data(), list.size(), kFloat, type, sizeof(float) * N);
+    return add_accessor(flat.data(), list.size(), kNumberType, type, sizeof(float) * N);
   }
 
   json add_attributes(const MeshPart& part) {
@@ -68,7 +68,7 @@ struct Writer {
       rounds = rounds || 1 - t.y() != exact.back();
     }
     attributes["TEXCOORD_0"] = add_vectors<2>(downwards);
-    if (rounds) attributes[kExactV] = add_accessor(exact.data(), exact.size(), kFloat, "SCALAR", sizeof(float));
+    if (rounds) attributes[kExactV] = add_accessor(exact.data(), exact.size(), kNumberType, "SCALAR", sizeof(float));
     return attributes;
   }
 
@@ -113,7 +113,7 @@ struct Writer {
     json primitive;
     primitive["attributes"] = add_attributes(part);
     primitive["indices"] =
-        add_accessor(corners.data(), corners.size(), kUnsignedInt, "SCALAR", sizeof(std::uint32_t));
+        add_accessor(corners.data(), corners.size(), kIndexType, "SCALAR", sizeof(std::uint32_t));
     if (part.material >= 0) primitive["material"] = part.material;
     json mesh = {{"primitives", json::array({primitive})}}, node;
     if (!part.mesh.empty()) mesh["name"] = part.mesh;

@@ -23,11 +23,11 @@ constexpr std::array kWithheld{
 // A log of random bytes has too many channels to remember.
 constexpr std::size_t kMaxDecided = 4096;
 
-std::optional<std::regex> expression(const char* option, const std::string& text) {
+std::optional<Pattern> expression(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
   try {
-    return std::regex(text, std::regex::extended | std::regex::optimize);
-  } catch (const std::regex_error&) {
+    return Pattern(text);
+  } catch (const std::invalid_argument&) {
     throw std::runtime_error(std::string(option) + " " + text +
                              ": is not a regular expression; write for example 'CONTACT.*|WORLD_STATE'");
   }
@@ -55,7 +55,7 @@ ReplaySelection::ReplaySelection(const ReplaySelectionOptions& w)
 const ReplaySelection::Channel& ReplaySelection::decide(std::string_view recorded) {
   if (const auto it = decided_.find(recorded); it != decided_.end()) return it->second;
   const std::string name(recorded);
-  const auto matches = [&](const std::optional<std::regex>& e) { return e && std::regex_match(name, *e); };
+  const auto matches = [&](const std::optional<Pattern>& e) { return e && e->matches(name); };
   Channel c{true, name};
   if (!verbatim_ && !matches(also_)) {
     const bool withheld =

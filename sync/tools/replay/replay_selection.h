@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <regex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -20,6 +19,7 @@
 #include <vector>
 
 #include "sync/log/log_reader.h"
+#include "sync/text/pattern.h"
 
 namespace tactus::sync {
 
@@ -50,7 +50,7 @@ class ReplaySelection {
 
   bool verbatim_;
   bool as_recorded_;
-  std::optional<std::regex> channels_, leave_out_, also_;
+  std::optional<Pattern> channels_, leave_out_, also_;
   std::vector<std::pair<std::string, std::string>> rename_;
   std::set<std::int32_t> live_;
   std::map<std::string, Channel, std::less<>> decided_;

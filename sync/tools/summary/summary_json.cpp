@@ -17,24 +17,24 @@ using Json = nlohmann::ordered_json;
 
 // Rounds figures to their significant digits.
 double rounded(double x, double per_unit) { return std::round(x * per_unit) / per_unit; }
-double us(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-3, 10); }
-double ms(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-6, 100); }
+double rounded_us(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-3, 10); }
+double rounded_ms(Nanoseconds t) { return rounded(static_cast<double>(t.count()) * 1e-6, 100); }
 
 // An uncertainty is never rounded down.
 double ms_up(Nanoseconds t) { return std::ceil(static_cast<double>(t.count()) * 1e-4) * 1e-2; }
 
 Json quantiles(const Histogram& h) {
-  return {{"p50", us(h.quantile(0.5))},
-          {"p99", us(h.quantile(0.99))},
-          {"p999", us(h.quantile(0.999))},
-          {"max", us(h.max())}};
+  return {{"p50", rounded_us(h.quantile(0.5))},
+          {"p99", rounded_us(h.quantile(0.99))},
+          {"p999", rounded_us(h.quantile(0.999))},
+          {"max", rounded_us(h.max())}};
 }
 
-Json nodes(const RunSummary& s) {
+Json json_of_nodes(const RunSummary& s) {
   Json out = Json::object();
   for (const auto& [name, n] : s.nodes()) {
     Json ages = Json::object();
-    for (const auto& [channel, age] : n.input_age) ages[channel] = {{"p50", ms(age.quantile(0.5))}, {"p99", ms(age.quantile(0.99))}};
+    for (const auto& [channel, age] : n.input_age) ages[channel] = {{"p50", rounded_ms(age.quantile(0.5))}, {"p99", rounded_ms(age.quantile(0.99))}};
     Json quality = nullptr;
     if (!n.quality.empty()) {
       const auto reports = static_cast<double>(std::accumulate(n.quality.begin(), n.quality.end(), std::int64_t{0}));
@@ -66,7 +66,7 @@ std::vector<std::string> senses(const PresentationMatcher& m) {
   return out;
 }
 
-Json game(const RunSummary& s) {
+Json json_of_game(const RunSummary& s) {
   if (!s.game()) return nullptr;
   const game_state_t& g = *s.game();
   const auto filled = std::count_if(g.holes.begin(), g.holes.end(), [](const hole_state_t& h) { return h.filled != 0; });
@@ -75,7 +75,7 @@ Json game(const RunSummary& s) {
   return {{"holes", g.count}, {"filled", filled}, {"won_at_s", won_at}};
 }
 
-Json contacts(const PresentationMatcher& m) {
+Json json_of_contacts(const PresentationMatcher& m) {
   Json presented = Json::object(), by_modality = Json::object();
   OutcomeCounts sum;
   for (const std::string& name : senses(m)) {
@@ -111,7 +111,7 @@ Json contacts(const PresentationMatcher& m) {
           {"by_modality", by_modality}};
 }
 
-Json asynchrony(const PresentationMatcher& m) {
+Json json_of_asynchrony(const PresentationMatcher& m) {
   const Json none = {{"n", 0}, {"p05", nullptr}, {"p50", nullptr}, {"p95", nullptr}, {"uncertainty", nullptr},
                      {"beyond_least_threshold", nullptr}, {"beyond_all_thresholds", nullptr}};
   // Pairs of known modalities that are not slow are always present.
@@ -124,9 +124,9 @@ Json asynchrony(const PresentationMatcher& m) {
     const BeyondThresholds beyond = count_beyond_thresholds(names.first, names.second, soa);
     const auto count = [](std::int64_t n) { return n < 0 ? Json(nullptr) : Json(n); };
     out[names.first + "_" + names.second] = {{"n", soa.count()},
-                                             {"p05", ms(soa.quantile(0.05))},
-                                             {"p50", ms(soa.quantile(0.5))},
-                                             {"p95", ms(soa.quantile(0.95))},
+                                             {"p05", rounded_ms(soa.quantile(0.05))},
+                                             {"p50", rounded_ms(soa.quantile(0.5))},
+                                             {"p95", rounded_ms(soa.quantile(0.95))},
                                              {"uncertainty", ms_up(soa.uncertainty())},
                                              {"beyond_least_threshold", count(beyond.least)},
                                              {"beyond_all_thresholds", count(beyond.all)}};
@@ -149,10 +149,10 @@ std::string to_json(const RunSummary& s) {
                     {"realtime_factor", rounded(s.realtime_factor(), 1e6)},
                     {"warnings", s.warnings()},
                     {"absent", s.absent()},
-                    {"nodes", nodes(s)},
-                    {"game", game(s)},
-                    {"contacts", contacts(s.matcher())},
-                    {"asynchrony_ms", asynchrony(s.matcher())},
+                    {"nodes", json_of_nodes(s)},
+                    {"game", json_of_game(s)},
+                    {"contacts", json_of_contacts(s.matcher())},
+                    {"asynchrony_ms", json_of_asynchrony(s.matcher())},
                     {"bus", bus}};
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -11,7 +11,7 @@ using audio::DacClock;
 namespace {
 
 // A card that plays at a constant rate, read by callbacks with random lateness.
-struct Card {
+struct SimulatedCard {
   double drift = 0;        // of the card against the host clock
   double pa_offset_s = 0;  // clock of PortAudio minus host clock
   double jitter_s = 6e-6;  // of the readings of PortAudio, rms as measured on the virtual card
@@ -42,7 +42,7 @@ constexpr double kSample_s = 1.0 / 48000;
 TEST_CASE("The time of a sample is accurate to one sample for any clock of PortAudio") {
   for (const double offset : {0.0, 1.79e9, -752.0})
     for (const double drift : {0.0, 100e-6, -100e-6}) {
-      Card card;
+      SimulatedCard card;
       card.pa_offset_s = offset, card.drift = drift;
       DacClock clock(48000);
       double worst = 0;
@@ -61,7 +61,7 @@ TEST_CASE("The time of a sample is accurate to one sample for any clock of PortA
 }
 
 TEST_CASE("The DAC clock restarts at once after an underflow") {
-  Card card;
+  SimulatedCard card;
   DacClock clock(48000);
   for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
   card.start_s += 0.06;  // a stall
@@ -72,7 +72,7 @@ TEST_CASE("The DAC clock restarts at once after an underflow") {
 }
 
 TEST_CASE("The DAC clock ignores one bad reading and follows a lasting jump") {
-  Card card;
+  SimulatedCard card;
   DacClock clock(48000);
   for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
   CallbackTime bad = card.next(128);
@@ -96,7 +96,7 @@ TEST_CASE("Without times of PortAudio the reported latency is used and added to 
 }
 
 TEST_CASE("The times of blocks are even when the callback is late at times") {
-  Card card;
+  SimulatedCard card;
   DacClock clock(48000);
   double before = 0, worst = 0;
   for (int block = 0; block < 4000; ++block) {
@@ -112,7 +112,7 @@ TEST_CASE("The times of blocks are even when the callback is late at times") {
 }
 
 TEST_CASE("Stalls with underflows and a late first callback leave no lasting error") {
-  Card card;
+  SimulatedCard card;
   DacClock clock(48000);
   for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
   for (int stall = 0; stall < 5; ++stall) {
@@ -132,7 +132,7 @@ TEST_CASE("Stalls with underflows and a late first callback leave no lasting err
 TEST_CASE("The time of a sample stays accurate when the clock of PortAudio steps") {
   const double step_s = GENERATE(-0.99, -0.5, -0.02, -0.004, 0.004, 0.5, 0.99, -3.0, 3.0);
   CAPTURE(step_s);
-  Card card;
+  SimulatedCard card;
   DacClock clock(48000);
   for (int block = 0; block < 1000; ++block) clock.block(128, card.next(128), 0.008);
   card.pa_offset_s += step_s;

@@ -6,15 +6,17 @@
 #include <tactus/contact_events_t.hpp>
 #include <vector>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::audio;
+using tactus::test::kMillisecond;
 
 namespace {
 
-constexpr sync::Nanoseconds kMs{1'000'000};
-const sync::LatePolicy kLate{sync::LateRule::kPlayWithFade, sync::Nanoseconds(50'000), 30 * kMs};
+const sync::LatePolicy kLate{sync::LateRule::kPlayWithFade, sync::Nanoseconds(50'000), 30 * kMillisecond};
 
-sync::HostTime at_ms(int ms) { return sync::host_time(1'000'000'000) + ms * kMs; }
+sync::HostTime due_ms(int ms) { return sync::host_time(1'000'000'000) + ms * kMillisecond; }
 
 // A loop of ticks of 1 ms, each with time for some hits. A hit is to be heard at its own time.
 struct Loop {
@@ -27,19 +29,19 @@ struct Loop {
     contact_events_t m{};
     m.header.run_id = m.header.incarnation = 1;
     m.header.seq = seq++;
-    m.header.publish_time_ns = sync::to_ns(at_ms(0));
-    m.clock = {0, sync::to_ns(at_ms(0)), 1};
+    m.header.publish_time_ns = sync::to_ns(due_ms(0));
+    m.clock = {0, sync::to_ns(due_ms(0)), 1};
     contact_event_t e{};
     e.event_id = id;
     e.kind = kind;
-    e.time_ns = (due_ms * kMs).count();
+    e.time_ns = (due_ms * kMillisecond).count();
     m.events.push_back(e);
     m.count = 1;
-    inbox.push(m, at_ms(0));
+    inbox.push(m, due_ms(0));
   }
   int tick(int ms, int time_for) {
-    return strike_due_hits(inbox, sync::SimTime::max(), at_ms(ms), kLate,
-                           HitActions{[](const contact_event_t& e) { return at_ms(0) + sync::Nanoseconds(e.time_ns); },
+    return strike_due_hits(inbox, sync::SimTime::max(), due_ms(ms), kLate,
+                           HitActions{[](const contact_event_t& e) { return due_ms(0) + sync::Nanoseconds(e.time_ns); },
                                       [&] { return --time_for > 0; },
                                       [&](const contact_event_t& e, sync::HostTime t) { struck.push_back(e.event_id), scheduled.push_back(t); },
                                       [&](const contact_event_t& e, sync::HostTime) { dropped.push_back(e.event_id); }});
@@ -55,7 +57,7 @@ TEST_CASE("Hits beyond the time of a tick are struck in the next ticks, in order
   CHECK(loop.struck == std::vector<std::int64_t>{9, 8, 7});
   for (int ms = 1; ms < 4; ++ms) loop.tick(ms, 3);
   CHECK(loop.struck == std::vector<std::int64_t>{9, 8, 7, 6, 5, 4, 3, 2, 1, 0});
-  CHECK(loop.scheduled.back() == at_ms(20));
+  CHECK(loop.scheduled.back() == due_ms(20));
   CHECK(loop.dropped.empty());
 }
 

@@ -52,7 +52,7 @@ Scrape scrape_over(const ReliefLevels* relief, std::int64_t id, std::int64_t at_
 }
 
 // A loop and a callback in one thread, in alternation.
-struct QueueFixture {
+struct ScrapeFixture {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
   ScrapeQueue queue{bench->queues};
 
@@ -74,7 +74,7 @@ constexpr int kBlock = 128;
 }  // namespace
 
 TEST_CASE("The surfaces of an ended scene are released when its last scrape has decayed, and not before") {
-  QueueFixture l;
+  ScrapeFixture l;
   auto first = surfaces_spoiled_on_free();
   const std::weak_ptr<const AudioSurfaces> watched = first;
   l.queue.set_surfaces(first);
@@ -95,7 +95,7 @@ TEST_CASE("The surfaces of an ended scene are released when its last scrape has 
 }
 
 TEST_CASE("Surfaces are kept while one of their scrapes waits in the queue or for its time") {
-  QueueFixture l;
+  ScrapeFixture l;
   const auto first = surfaces_spoiled_on_free(), second = surfaces_spoiled_on_free();
   l.queue.set_surfaces(first);
   REQUIRE(l.scrape(first, 1, 4800));  // presented in 100 ms
@@ -112,7 +112,7 @@ TEST_CASE("Surfaces are kept while one of their scrapes waits in the queue or fo
 }
 
 TEST_CASE("Of two scenes in quick succession the one without a scrape is released at once, the earlier one later") {
-  QueueFixture l;
+  ScrapeFixture l;
   const auto first = surfaces_spoiled_on_free(), second = surfaces_spoiled_on_free(), third = surfaces_spoiled_on_free();
   l.queue.set_surfaces(first);
   REQUIRE(l.scrape(first));
@@ -131,7 +131,7 @@ TEST_CASE("Of two scenes in quick succession the one without a scrape is release
 }
 
 TEST_CASE("A stopped callback releases no surfaces that it may read, and the queue bounds their number") {
-  QueueFixture l;
+  ScrapeFixture l;
   const auto sounding = surfaces_spoiled_on_free();
   l.queue.set_surfaces(sounding);
   REQUIRE(l.scrape(sounding));
@@ -171,7 +171,7 @@ TEST_CASE("A stopped callback releases no surfaces that it may read, and the que
 }
 
 TEST_CASE("With the loop and the callback in two threads no freed surface is audible, and all are freed in the end") {
-  QueueFixture l;
+  ScrapeFixture l;
   std::atomic<bool> done{false};
   std::atomic<std::size_t> played{0};
   float loudest = 0;

@@ -24,7 +24,7 @@ StrikeQueue::Table table(double frequency_Hz) {
 }
 
 // A loop and a callback in one thread, in alternation.
-struct QueueFixture {
+struct StrikeFixture {
   std::unique_ptr<Bench> bench = std::make_unique<Bench>();
   StrikeQueue queue{bench->queues};
 
@@ -42,7 +42,7 @@ struct QueueFixture {
 }  // namespace
 
 TEST_CASE("A table is kept while a strike of it waits, and is freed once only later scenes have strikes") {
-  QueueFixture l;
+  StrikeFixture l;
   auto first = table(500), second = table(700);
   const std::weak_ptr<const ResonatorTable> old = first;
   REQUIRE(l.strike(first, 4800));
@@ -62,7 +62,7 @@ TEST_CASE("A table is kept while a strike of it waits, and is freed once only la
 }
 
 TEST_CASE("With a stopped callback at most one table per strike in the queue is kept") {
-  QueueFixture l;
+  StrikeFixture l;
   int submitted = 0;
   for (int i = 0; i < 2000; ++i) submitted += l.strike(table(500), 0, i) ? 1 : 0;
   CHECK(submitted == 512);
@@ -72,7 +72,7 @@ TEST_CASE("With a stopped callback at most one table per strike in the queue is 
 }
 
 TEST_CASE("A closed renderer releases all tables except the newest") {
-  QueueFixture l;
+  StrikeFixture l;
   for (int i = 0; i < 10; ++i) REQUIRE(l.strike(table(500), 48000, i));
   l.bench->renderer.abandon();
   l.queue.free_released();
@@ -82,7 +82,7 @@ TEST_CASE("A closed renderer releases all tables except the newest") {
 
 TEST_CASE("No strike sounds with freed modes, for any order of strikes and scenes") {
   std::mt19937 random(4);
-  QueueFixture l;
+  StrikeFixture l;
   auto of = table(300);
   for (int i = 0; i < 3000; ++i) {
     if (random() % 7 == 0) of = table(200 + random() % 3000);

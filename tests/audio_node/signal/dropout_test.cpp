@@ -15,9 +15,9 @@ using namespace tactus::audio::test;
 namespace {
 
 constexpr DropoutDef kTwenty_ms{0.02, 1};
-constexpr std::size_t kSecond = 48000, kLength = 960, kEdge = 48;
+constexpr std::size_t kSecondSamples = 48000, kLength = 960, kEdge = 48;
 // Of a raised cosine over the edge.
-const float kSteepest = std::numbers::pi_v<float> / 2 / kEdge + 1e-5f;
+const float kEdgeStep = std::numbers::pi_v<float> / 2 / kEdge + 1e-5f;
 
 std::vector<float> next(Dropout& dropout, std::size_t samples) {
   std::vector<float> gains(samples);
@@ -46,24 +46,24 @@ struct Tone {
 TEST_CASE("A drop-out is silent for its length at its period, with edges of a millisecond") {
   Dropout dropout(kRate);
   dropout.set(kTwenty_ms);
-  const auto gains = next(dropout, 10 * kSecond);
+  const auto gains = next(dropout, 10 * kSecondSamples);
   double lost = 0;
   for (std::size_t n = 0; n < gains.size(); ++n) {
-    const std::size_t since = n % kSecond;
+    const std::size_t since = n % kSecondSamples;
     if (since + 1 >= kEdge && since < kLength) CHECK(gains[n] == 0);
     if (since >= kLength + kEdge) CHECK(gains[n] == 1);
     lost += 1 - static_cast<double>(gains[n]);
   }
   // The second edge removes the amount that the first one passes.
   CHECK(lost == Approx(10 * kLength).epsilon(1e-6));
-  CHECK(largest_step(gains) <= kSteepest);
+  CHECK(largest_step(gains) <= kEdgeStep);
 }
 
 TEST_CASE("Drop-outs depend on the sample number only, not on the block sizes") {
   Dropout whole(kRate), cut(kRate);
   whole.set(kTwenty_ms), cut.set(kTwenty_ms);
   std::vector<float> parts;
-  for (std::size_t size = 1; parts.size() < kSecond; size = size % 64 + 1)
+  for (std::size_t size = 1; parts.size() < kSecondSamples; size = size % 64 + 1)
     for (const float gain : next(cut, size)) parts.push_back(gain);
   CHECK(parts == next(whole, parts.size()));
 }
@@ -84,8 +84,8 @@ TEST_CASE("Drop-outs are switched on and off without a click and keep their posi
   CHECK(gains.back() == 1);
   play(1000);
   dropout.set(kTwenty_ms);
-  play(kSecond);
-  CHECK(largest_step(gains) <= kSteepest);
+  play(kSecondSamples);
+  CHECK(largest_step(gains) <= kEdgeStep);
   const auto reference = next(always, gains.size());
   CHECK(std::equal(gains.begin() + 1600, gains.end(), reference.begin() + 1600));
 }
@@ -94,14 +94,14 @@ TEST_CASE("Sound with drop-outs equals the sound without, times the drop-out gai
   Tone plain({}), poor(kTwenty_ms);
   for (Tone* t : {&plain, &poor}) {
     REQUIRE(t->bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, t->bench->time_ns(3000))));
-    t->play_until(2 * kSecond);
+    t->play_until(2 * kSecondSamples);
   }
   Dropout dropout(kRate);
   dropout.set(kTwenty_ms);
-  const auto gains = next(dropout, 2 * kSecond);
+  const auto gains = next(dropout, 2 * kSecondSamples);
   const auto &x = plain.bench->left, &y = poor.bench->left;
   double loudest = 0;
-  for (std::size_t n = Limiter::kDelay; n < 2 * kSecond; ++n) {
+  for (std::size_t n = Limiter::kDelay; n < 2 * kSecondSamples; ++n) {
     const float expected = x[n] * gains[n - Limiter::kDelay];
     CHECK(y[n] == expected);
     loudest = std::max(loudest, std::abs(static_cast<double>(y[n])));
@@ -113,14 +113,14 @@ TEST_CASE("A strike whose onset is in a drop-out is reported as dropped by the p
   // Frames leave the limiter kDelay samples after they were counted.
   const auto struck_at = [](std::size_t counted) {
     Tone tone(kTwenty_ms);
-    tone.play_until(kSecond / 2);
-    const auto at = tone.bench->time_ns(kSecond + counted + Limiter::kDelay);
+    tone.play_until(kSecondSamples / 2);
+    const auto at = tone.bench->time_ns(kSecondSamples + counted + Limiter::kDelay);
     REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, at)));
-    tone.play_until(kSecond + kSecond / 2);
+    tone.play_until(kSecondSamples + kSecondSamples / 2);
     REQUIRE(tone.bench->reports.size() == 1);
     const auto& left = tone.bench->left;
     const bool rings_after =
-        std::any_of(left.begin() + kSecond + 2000, left.end(), [](float x) { return std::abs(x) > 0.01f; });
+        std::any_of(left.begin() + kSecondSamples + 2000, left.end(), [](float x) { return std::abs(x) > 0.01f; });
     CHECK(rings_after);
     return tone.bench->reports[0];
   };
@@ -136,20 +136,20 @@ TEST_CASE("A strike whose onset is in a drop-out is reported as dropped by the p
 TEST_CASE("Drop-outs can start and end while a sound plays") {
   Tone tone({});
   REQUIRE(tone.bench->queues.strikes.push(strike_of(1, 1, 440, 0.5, tone.bench->time_ns(3000))));
-  tone.play_until(kSecond / 2);
+  tone.play_until(kSecondSamples / 2);
   tone.set_dropout({0.02, 0.1});
-  tone.play_until(kSecond);
+  tone.play_until(kSecondSamples);
   tone.set_dropout({});
-  tone.play_until(2 * kSecond);
+  tone.play_until(2 * kSecondSamples);
   const auto silent = [&](std::size_t from, std::size_t to) {
     long run = 0, longest = 0;
     for (std::size_t n = from; n < to; ++n)
       longest = std::max(longest, run = tone.bench->left[n] == 0 ? run + 1 : 0);
     return longest;
   };
-  CHECK(silent(4000, kSecond / 2) < 10);
-  CHECK(silent(kSecond / 2, kSecond) == kLength - kEdge + 1);
-  CHECK(silent(kSecond + kLength, 2 * kSecond) < 10);
+  CHECK(silent(4000, kSecondSamples / 2) < 10);
+  CHECK(silent(kSecondSamples / 2, kSecondSamples) == kLength - kEdge + 1);
+  CHECK(silent(kSecondSamples + kLength, 2 * kSecondSamples) < 10);
   // The tone moves by 0.1 * 2 pi 440 / 48000 a sample, and its edge by 0.1 times the steepest.
-  CHECK(largest_step({tone.bench->left.begin() + 4000, tone.bench->left.end()}) < 0.1f * (0.0576f + kSteepest));
+  CHECK(largest_step({tone.bench->left.begin() + 4000, tone.bench->left.end()}) < 0.1f * (0.0576f + kEdgeStep));
 }

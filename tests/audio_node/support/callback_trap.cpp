@@ -32,8 +32,6 @@ thread_local int armed = 0;
 std::atomic<int> count{0};
 std::atomic<const char*> first{nullptr};
 
-// A sanitizer replaces the same functions, so there is no trap then.
-#if !defined(TACTUS_SANITIZED)
 void count_call(const char* what) {
   if (armed == 0) return;
   count.fetch_add(1, std::memory_order_relaxed);
@@ -57,7 +55,6 @@ F* next(std::atomic<void*>& kept, const char* name) {
   }
   return reinterpret_cast<F*>(f);
 }
-#endif
 
 }  // namespace
 
@@ -80,7 +77,6 @@ bool traps_allocation() {
 
 }  // namespace tactus::audio::test
 
-#if !defined(TACTUS_SANITIZED)
 using tactus::audio::test::next;
 using tactus::audio::test::count_call;
 
@@ -88,10 +84,11 @@ using tactus::audio::test::count_call;
 #define PASS_ON(result, name, parameters, arguments)       \
   extern "C" result name parameters {                      \
     static std::atomic<void*> kept{nullptr};               \
-    count_call(#name);                                     \
+    count_call(#name);                                           \
     return next<result parameters>(kept, #name) arguments; \
   }
 
+#if !defined(TACTUS_SANITIZED)
 // Entry points of glibc: dlsym() itself allocates before it has found the next malloc.
 extern "C" {
 void* __libc_malloc(std::size_t);
@@ -209,5 +206,5 @@ extern "C" long syscall(long number, ...) noexcept {
   va_end(list);
   return next<long(long, ...)>(kept, "syscall")(number, a[0], a[1], a[2], a[3], a[4], a[5]);
 }
-// NOLINTEND
 #endif
+// NOLINTEND

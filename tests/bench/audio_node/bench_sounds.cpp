@@ -2,7 +2,6 @@
 // same motion, and silence after each. tests/measure/draw_sounds draws the output of audio_node --log for it.
 //
 //    bin/bench_sounds LOG MATERIAL...
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 #include <tactus/asset_ref_t.hpp>
@@ -76,10 +75,10 @@ contact_t contact(const scene_t& scene, int bar, int material, double went_m, bo
 int main(int argc, char** argv) try {
   std::string path;
   std::vector<std::string> materials;
-  CLI::App app{"Writes a log in which bars of materials_bench are struck, scraped and rolled on."};
-  app.add_option("LOG", path, "file to write")->required();
-  app.add_option("MATERIAL", materials, "in order")->required();
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::Arguments app{"Writes a log in which bars of materials_bench are struck, scraped and rolled on."};
+  app.add_option("LOG", path, "file to write").required();
+  app.add_option("MATERIAL", materials, "in order").required();
+  tactus::sync::parse_or_exit(app, "bench_sounds", argc, argv);
 
   std::vector<std::string> warnings;
   const auto assets =

@@ -2,7 +2,6 @@
 // and maximum, as a share of the block's duration, for each instruction set of this machine.
 //
 //    bin/callback_table [--bodies N] [--modes N] [--frames N] [--seconds S] [--json FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -20,6 +19,7 @@
 
 #include "audio_node/mixer/renderer.h"
 #include "audio_node/spatial/space_of.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 using namespace tactus::audio;
@@ -65,13 +65,13 @@ int main(int argc, char** argv) {
   int bodies = 100, modes = 100, frames = 64;
   double seconds = 10;
   std::string json;
-  CLI::App app{"Cost of a block in the audio callback while many bodies ring."};
-  app.add_option("--bodies", bodies, "that ring")->check(CLI::Range(1, kQualities[0].voices));
-  app.add_option("--modes", modes, "of each")->check(CLI::Range(1, kMaxModes));
-  app.add_option("--frames", frames, "of a block")->check(CLI::Range(1, 4096));
-  app.add_option("--seconds", seconds, "of sound")->check(CLI::Range(0.1, 3600.0));
+  tactus::sync::Arguments app{"Cost of a block in the audio callback while many bodies ring."};
+  app.add_option("--bodies", bodies, "that ring").range(1, kQualities[0].voices);
+  app.add_option("--modes", modes, "of each").range(1, kMaxModes);
+  app.add_option("--frames", frames, "of a block").range(1, 4096);
+  app.add_option("--seconds", seconds, "of sound").range(0.1, 3600.0);
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "callback_table", argc, argv);
 
   const double period_s = frames / kRate_Hz;
   std::printf("%d bodies of %d modes, blocks of %d frames (%.2f ms), %.0f strikes a second\n", bodies, modes,

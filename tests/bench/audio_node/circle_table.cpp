@@ -2,20 +2,20 @@
 // the SOFA file's responses. A negative time: the left ear leads.
 //
 //    bin/circle_table [--json FILE]
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sync/node/node_options.h"
 #include "tests/audio_node/support/kemar.h"
 
 using namespace tactus::audio;
 
 int main(int argc, char** argv) {
   std::string json;
-  CLI::App app{"Time and level differences between the ears on a circle."};
+  tactus::sync::Arguments app{"Time and level differences between the ears on a circle."};
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "circle_table", argc, argv);
 
   constexpr std::array<int, 3> kOctaves_Hz{500, 2000, 8000};
   std::printf("%-8s %12s %12s", "azimuth", "ITD us", "measured");

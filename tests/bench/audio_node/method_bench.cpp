@@ -2,7 +2,6 @@
 // contacts, in blocks of 64 frames with a stereo pan.
 //
 //    bin/method_bench [--seconds N] [--json FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -23,6 +22,7 @@
 #include "audio_node/mixer/library.h"
 #include "audio_node/excitation/sampler.h"
 #include "lcmtypes/vectors.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 using namespace tactus::audio;
@@ -174,11 +174,11 @@ class Rehearsal {
 int main(int argc, char** argv) {
   std::string json, folder = "default";
   int seconds = 10;
-  CLI::App app{"Cost of a contact in the audio callback, by method."};
-  app.add_option("--seconds", seconds, "seconds of sound of each row")->check(CLI::Range(1, 600));
+  tactus::sync::Arguments app{"Cost of a contact in the audio callback, by method."};
+  app.add_option("--seconds", seconds, "seconds of sound of each row").range(1, 600);
   app.add_option("--sounds", folder, "folder of recordings; default: the set beside the program");
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "method_bench", argc, argv);
   const Database database = read_database(sounds_folder(folder), 48000, 0.05);
   for (const SoundFault& f : database.faults)
     std::fprintf(stderr, "method_bench: %s %s\n", f.path.c_str(), f.what.c_str());

@@ -3,7 +3,6 @@
 // a silence in which all states have become denormal.
 //
 //    bin/ring_bench [--modes N] [--json FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,6 +15,7 @@
 
 #include "audio_node/modal/bank/ring.h"
 #if defined(TACTUS_STK)
+#include "sync/node/node_options.h"
 #include "tests/bench/audio_node/stk_bars.h"
 #endif
 
@@ -58,10 +58,10 @@ struct Variant {
 int main(int argc, char** argv) {
   std::string json;
   int modes = 1600;
-  CLI::App app{"Number of modes that one core renders at 48 kHz."};
-  app.add_option("--modes", modes, "of the bank")->check(CLI::Range(16, 1'000'000));
+  tactus::sync::Arguments app{"Number of modes that one core renders at 48 kHz."};
+  app.add_option("--modes", modes, "of the bank").range(16, 1'000'000);
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "ring_bench", argc, argv);
   modes = (modes + kModeGroup - 1) / kModeGroup * kModeGroup;
 #if defined(__SSE__)
   _mm_setcsr(_mm_getcsr() | 0x8040);  // denormal numbers are 0, as in the callback

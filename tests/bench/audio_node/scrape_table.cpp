@@ -1,5 +1,4 @@
 // Cost of a sliding or rolling contact: of the audio callback per block of 64 frames, and of the node's loop per tick.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -17,6 +16,7 @@
 #include "audio_node/mixer/scrapes.h"
 #include "audio_node/excitation/sliding.h"
 #include "lcmtypes/vectors.h"
+#include "sync/node/node_options.h"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -181,10 +181,10 @@ void loop_table(int ticks, const scene_t& scene, const Impacts& impacts, nlohman
 int main(int argc, char** argv) {
   std::string json;
   int blocks = 4000;
-  CLI::App app{"Cost of sliding and rolling contacts in the audio callback and in the loop of its node."};
-  app.add_option("--blocks", blocks, "of 64 frames, of each row")->check(CLI::Range(100, 1'000'000));
+  tactus::sync::Arguments app{"Cost of sliding and rolling contacts in the audio callback and in the loop of its node."};
+  app.add_option("--blocks", blocks, "of 64 frames, of each row").range(100, 1'000'000);
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "scrape_table", argc, argv);
 #if defined(__SSE__)
   _mm_setcsr(_mm_getcsr() | 0x8040);  // denormal numbers are 0, as in the callback
 #endif

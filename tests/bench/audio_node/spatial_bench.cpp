@@ -7,7 +7,6 @@
 #include <AL/alc.h>
 #include <AL/alext.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +20,7 @@
 #include <vector>
 
 #include "audio_node/spatial/spatialiser.h"
+#include "sync/node/node_options.h"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -172,10 +172,10 @@ struct Variant {
 
 int main(int argc, char** argv) try {
   std::string json, file = "/usr/share/libmysofa/MIT_KEMAR_normal_pinna.sofa";
-  CLI::App app{"Cost of many sources rendered with a measured HRTF."};
+  tactus::sync::Arguments app{"Cost of many sources rendered with a measured HRTF."};
   app.add_option("--hrtf", file, "SOFA file");
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "spatial_bench", argc, argv);
 #if defined(__SSE__)
   _mm_setcsr(_mm_getcsr() | 0x8040);  // denormal numbers are 0, as in the callback
 #endif

@@ -13,12 +13,12 @@
 #include <tactus/vec3f_t.hpp>
 #include <thread>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "audio_node/devices/stream.h"
 #include "audio_node/excitation/impact.h"
 #include "sync/clocks/pacing.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus;
 using nlohmann::json;
@@ -92,10 +92,10 @@ void strike(const json& of, const std::string& folder) {
 
 int main(int argc, char** argv) try {
   std::string cases, folder = ".";
-  CLI::App app{"Strikes bodies one after the other, each alone, through the virtual card; one JSON line for each reports its WAV."};
-  app.add_option("cases", cases, "JSON: an array of strikes, each with a body and a point")->required();
+  tactus::sync::Arguments app{"Strikes bodies one after the other, each alone, through the virtual card; one JSON line for each reports its WAV."};
+  app.add_option("cases", cases, "JSON: an array of strikes, each with a body and a point").required();
   app.add_option("--out", folder, "folder of the WAV files");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "strike_bodies", argc, argv);
   std::ifstream file(cases);
   if (!file) throw std::runtime_error(cases + " cannot be read; name a file of cases");
   for (const json& of : json::parse(file)) strike(of, folder);

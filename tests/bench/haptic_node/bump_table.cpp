@@ -6,11 +6,11 @@
 // --check: exit 1 unless, by normals at 0.05 to 0.5 m/s, the force has the spectrum of the slope in every band that holds more than 1 % of
 // it (coherence at least 0.95, gain 0.9 to 1.1), its correlation with the force of the triangles is at least 0.9 and larger than by
 // heights, and the force rises by no more than the slew limit (it falls at once).
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sync/node/node_options.h"
 #include "tests/bench/haptic_node/bump_stroke.h"
 #include "tests/bench/audio_node/spectrum.h"
 
@@ -255,11 +255,11 @@ void draw(const std::string& path) {
 int main(int argc, char** argv) {
   std::string json_file, picture;
   bool check = false;
-  CLI::App app{"Agreement of the felt and the seen height map."};
+  tactus::sync::Arguments app{"Agreement of the felt and the seen height map."};
   app.add_option("--json", json_file, "also write the figures there");
   app.add_option("--picture", picture, "draw the stroke and the spectra there (SVG)");
   app.add_flag("--check", check, "exit 1 unless all figures stay within their bounds");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "bump_table", argc, argv);
   nlohmann::json out{{"spectrum", nlohmann::json::array()},
                      {"methods", nlohmann::json::array()},
                      {"steep", nlohmann::json::array()}};

@@ -26,7 +26,6 @@
 // wall whose force is off by more than 25 %; a body with less than half of the design force (a fifth after losses
 // and a gap, after which touch is softer than the mean age implies), or a body that is pushed by less than half of
 // the distance.
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -35,6 +34,7 @@
 #include <vector>
 
 #include "haptic_node/rendering/coupling.h"
+#include "sync/node/node_options.h"
 #include "tests/bench/haptic_node/passivity_devices.h"
 #include "tests/haptic_node/support/episode.h"
 
@@ -171,15 +171,15 @@ int main(int argc, char** argv) {
   std::string json, only;
   bool check = false, all = false, full = false;
   unsigned seed = 0, seeds = 8;
-  CLI::App app{"Energy that touch adds to a hand and a body (passivity)."};
+  tactus::sync::Arguments app{"Energy that touch adds to a hand and a body (passivity)."};
   app.add_option("--json", json, "also writes the figures to this file");
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
-  app.add_option("--seeds", seeds, "draws losses with the seeds 1 to N")->check(CLI::Range(1, 10000));
-  app.add_option("--seed", seed, "draws losses with this seed only")->excludes("--seeds");
+  app.add_option("--seeds", seeds, "draws losses with the seeds 1 to N").range(1, 10000);
+  app.add_option("--seed", seed, "draws losses with this seed only").excludes("--seeds");
   app.add_flag("--all", all, "print every episode");
-  app.add_option("--only", only, "print one part: network or devices")->check(CLI::IsMember({"network", "devices"}));
+  app.add_option("--only", only, "print one part: network or devices").one_of({"network", "devices"});
   app.add_flag("--full", full, "the whole grid of devices");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "passivity_table", argc, argv);
   nlohmann::json by_device = nlohmann::json::array(), by_rate = nlohmann::json::array();
   const bool devices_good =
       only == "network" || (static_cast<int>(tactus::bench::device_table(by_device, full, all)) &

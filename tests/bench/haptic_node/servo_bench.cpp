@@ -3,7 +3,6 @@
 // planes.
 //
 //    bin/servo_bench [--ticks N] [--json FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -15,6 +14,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
 
+#include "sync/node/node_options.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -94,10 +94,10 @@ Figures measure(int planes, double rate_Hz, Fresh fresh, int ticks, bool rigid) 
 int main(int argc, char** argv) {
   std::string json;
   int ticks = 20000;
-  CLI::App app{"Cost of one tick of touch."};
-  app.add_option("--ticks", ticks, "of each row")->check(CLI::Range(100, 10000000));
+  tactus::sync::Arguments app{"Cost of one tick of touch."};
+  app.add_option("--ticks", ticks, "of each row").range(100, 10000000);
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "servo_bench", argc, argv);
   std::printf("%8s %8s %8s %12s %12s %12s %10s %10s\n", "tool", "planes", "Hz", "model", "median us", "p99 us",
               "force N", "pressed");
   nlohmann::json out = nlohmann::json::array();

@@ -5,10 +5,10 @@
 //
 // Prints the trials that pass a limit, the largest figures, and the number of trials of each kind. --print: only trial K,
 // with all its settings. --check: exit 1 when a trial passes a limit.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 
+#include "sync/node/node_options.h"
 #include "tests/haptic_node/support/trial.h"
 
 using namespace tactus::haptic::test;
@@ -17,12 +17,12 @@ int main(int argc, char** argv) {
   int trials = 4000, only = -1;
   unsigned seed = 1;
   bool check = false;
-  CLI::App app{"Touch with random settings, against its limits."};
-  app.add_option("--trials", trials, "number of trials")->check(CLI::Range(1, 10'000'000));
+  tactus::sync::Arguments app{"Touch with random settings, against its limits."};
+  app.add_option("--trials", trials, "number of trials").range(1, 10'000'000);
   app.add_option("--seed", seed, "seed of the settings");
   app.add_option("--print", only, "prints only this trial");
   app.add_flag("--check", check, "exit 1 when a trial passes a limit");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "settings_table", argc, argv);
   std::mt19937 random(seed);
   int bad = 0, touched = 0, walls = 0;
   double walls_mJ = 0, bodies_mJ = 0;

@@ -1,6 +1,5 @@
 // Performance of string devices. For each frame, in the middle, over its workspace and beyond: the force available in every direction, the
 // torque likewise, the resolution of the pose, and the time of a tick's computation.
-#include <CLI/CLI.hpp>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <chrono>
@@ -16,6 +15,7 @@
 #include "haptic_node/devices/spidar/frame_file.h"
 #include "haptic_node/devices/spidar/string_pose.h"
 #include "haptic_node/devices/spidar/tensions.h"
+#include "sync/node/node_options.h"
 
 using namespace tactus::haptic;
 using Eigen::Vector3d;
@@ -144,12 +144,12 @@ json table_of(const StringFrame& f) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Forces that a string device can render, by position.");
+  tactus::sync::Arguments app("Forces that a string device can render, by position.");
   std::string out;
   std::vector<std::string> names = known_frames();
   app.add_option("--json", out, "file to write the figures to");
   app.add_option("frames", names, "known frames or JSON files; default: all known");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "spidar_table", argc, argv);
   json all = json::array();
   for (const std::string& name : names) {
     const auto known = known_frame(name);

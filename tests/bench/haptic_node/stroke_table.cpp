@@ -7,7 +7,6 @@
 // friction 0.3. --check: exit 1 unless, on the stroke, the force changes by at most 0.2 N per tick at p99 and by at most 0.5 N in any
 // tick, and no tick of it pops through, with less than 0.05 N; and unless it changes by at most 0.5 N per tick at the first touch and the
 // release, at up to 0.15 m/s ("ends max").
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +15,7 @@
 #include <tactus/touch_plane_t.hpp>
 
 #include "sim_node/model/triangles.h"
+#include "sync/node/node_options.h"
 #include "tests/bench/haptic_node/stroke_loop.h"
 #include "tests/sim_node/support/meshes.h"
 #include "tests/sim_node/support/simple_hand.h"
@@ -128,13 +128,13 @@ int main(int argc, char** argv) {
   std::string json, trace_file;
   double seconds = 6, waves = 15;
   bool check = false;
-  CLI::App app{"Smoothness of the force of a stroke over a bumpy sphere of 20,480 triangles."};
+  tactus::sync::Arguments app{"Smoothness of the force of a stroke over a bumpy sphere of 20,480 triangles."};
   app.add_option("--json", json, "also writes the figures to this file");
   app.add_option("--trace", trace_file, "of the first row: time, force, change, and the planes");
-  app.add_option("--seconds", seconds, "of each stroke")->check(CLI::Range(0.1, 100.0));
-  app.add_option("--waves", waves, "of a bump per radian")->check(CLI::Range(1.0, 40.0));
+  app.add_option("--seconds", seconds, "of each stroke").range(0.1, 100.0);
+  app.add_option("--waves", waves, "of a bump per radian").range(1.0, 40.0);
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "stroke_table", argc, argv);
   std::printf("%8s %6s %8s %8s %10s %10s %10s %10s %6s %8s\n", "tool mm", "Hz", "sway mm", "mean N", "p50 N/tick",
               "p99 N/tick", "max N/tick", "ends max", "pops", "planes");
   nlohmann::json out = nlohmann::json::array();

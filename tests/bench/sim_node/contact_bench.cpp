@@ -3,7 +3,6 @@
 //
 //    bin/contact_bench [--json FILE]      boxes apart on the floor and in towers of ten, 1/240 s
 #include <ode/ode.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/solver.h"
+#include "sync/node/node_options.h"
 #include "tests/sim_node/support/small_worlds.h"
 #include "tests/sim_node/support/toys.h"
 
@@ -218,15 +218,15 @@ nlohmann::json whole(int boxes, int high) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Cost of a step with many boxes, ours and ODE");
+  tactus::sync::Arguments app("Cost of a step with many boxes, ours and ODE");
   std::string file;
   std::vector<int> sizes{10, 100, 500}, heights{1, 10};
   bool whole_only = false;
   app.add_option("--json", file, "writes the figures here");
-  app.add_option("--boxes", sizes, "how many")->capture_default_str();
-  app.add_option("--high", heights, "boxes in a tower")->capture_default_str();
+  app.add_option("--boxes", sizes, "how many").show_default();
+  app.add_option("--high", heights, "boxes in a tower").show_default();
   app.add_flag("--whole", whole_only, "only the whole step");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "contact_bench", argc, argv);
   dInitODE2(0);
   nlohmann::json out;
   if (!whole_only) {

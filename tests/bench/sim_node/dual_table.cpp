@@ -2,7 +2,6 @@
 // at the haptic rate.
 #include <time.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +12,7 @@
 
 #include "sim_node/world/simulation.h"
 #include "sim_node/dual/dual_groups.h"
+#include "sync/node/node_options.h"
 #include "tests/sim_node/support/simple_hand.h"
 
 using namespace tactus;
@@ -158,18 +158,18 @@ void ticks_table(int ticks, nlohmann::json& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Cost of a world in two groups, and of one that is simulated as a whole at 1 kHz."};
+  tactus::sync::Arguments app{"Cost of a world in two groups, and of one that is simulated as a whole at 1 kHz."};
   int ticks = 3000, rounds = 5;
   std::string json, only;
   app.add_option("--ticks", ticks, "of each row of the first table")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      .show_default()
+      .positive();
   app.add_option("--rounds", rounds, "of each row of the second")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      .show_default()
+      .positive();
   app.add_option("--only", only, "rows of the second whose name has this in it, and no first");
   app.add_option("--json", json, "write the tables here too");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "dual_table", argc, argv);
   nlohmann::json out;
   if (only.empty()) ticks_table(ticks, out);
   std::printf(

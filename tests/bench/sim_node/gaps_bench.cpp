@@ -4,7 +4,6 @@
 //    bin/gaps_bench [--json FILE]
 #include <ode/ode.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "sim_node/contacts/contact_finder.h"
+#include "sync/node/node_options.h"
 #include "tests/sim_node/support/meshes.h"
 #include "tests/sim_node/support/small_worlds.h"
 
@@ -164,10 +164,10 @@ void boxes(int count, int high, nlohmann::json& json) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Cost of contact detection with gaps");
+  tactus::sync::Arguments app("Cost of contact detection with gaps");
   std::string file;
   app.add_option("--json", file, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "gaps_bench", argc, argv);
   dInitODE2(0);
   nlohmann::json json;
   pairs(json);

@@ -1,24 +1,24 @@
 // Number of contacts that two rules of grouping miss, and size of the group, for a hand with arbitrary acceleration: the table behind
 // sim_node/dual/grouping.h.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "sync/node/node_options.h"
 #include "tests/sim_node/support/adversary.h"
 
 using namespace tactus::sim;
 
 int main(int argc, char** argv) {
-  CLI::App app{"Contacts missed by grouping, and sizes of the group, against an adversarial tool."};
+  tactus::sync::Arguments app{"Contacts missed by grouping, and sizes of the group, against an adversarial tool."};
   int scenes = 10, steps = 120, balls = 60;
   std::string json;
-  app.add_option("--scenes", scenes, "random scenes a row")->capture_default_str()->check(CLI::PositiveNumber);
-  app.add_option("--steps", steps, "visual steps of each")->capture_default_str()->check(CLI::PositiveNumber);
-  app.add_option("--balls", balls, "in a room of 0.6 m")->capture_default_str()->check(CLI::PositiveNumber);
+  app.add_option("--scenes", scenes, "random scenes a row").show_default().positive();
+  app.add_option("--steps", steps, "visual steps of each").show_default().positive();
+  app.add_option("--balls", balls, "in a room of 0.6 m").show_default().positive();
   app.add_option("--json", json, "write the table here too");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "grouping_table", argc, argv);
   nlohmann::json table = nlohmann::json::array();
   std::printf("%d scenes of %d balls in a room of 0.6 m, %d visual steps each; tool at most 1 m/s, bang-bang\n\n",
               scenes, balls, steps);

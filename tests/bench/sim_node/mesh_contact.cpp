@@ -2,7 +2,6 @@
 // interleaved in one run.
 //
 //    bin/mesh_contact [--triangles 5120] [--gap_mm 0.3] [--tolerance_mm 1] [--poses 40] [--json FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -13,6 +12,7 @@
 
 #include "sim_node/collision/detector.h"
 #include "sim_node/collision/layers/patches.h"
+#include "sync/node/node_options.h"
 #include "tests/sim_node/support/least_gap.h"
 #include "tests/sim_node/support/meshes.h"
 
@@ -206,13 +206,13 @@ void report(const Queries& queries, const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Cost of mesh against mesh: our layers, FCL and ODE."};
+  tactus::sync::Arguments app{"Cost of mesh against mesh: our layers, FCL and ODE."};
   app.add_option("--triangles", options.triangles, "of each mesh: 20 times a power of four");
   app.add_option("--gap_mm", options.gap_mm);
   app.add_option("--tolerance_mm", options.tolerance_mm);
   app.add_option("--poses", options.poses);
   app.add_option("--json", options.json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "mesh_contact", argc, argv);
   const WorldDef world = two_spheres(options.triangles);
   Queries queries(world, options.tolerance_m());
   measure(queries, options);

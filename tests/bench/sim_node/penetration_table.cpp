@@ -1,6 +1,5 @@
 // Maximum penetration of bodies in every scene, by an oracle independent of the detectors that compute gaps: the default pairing of solver
 // and detector, and others for comparison; at 1 ms and at 60 Hz.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 #include "sim_node/behaviour/solver.h"
 #include "sim_node/scene/load_sdf.h"
+#include "sync/node/node_options.h"
 #include "sync/text/settings.h"
 #include "tests/sim_node/support/hard_scenes.h"
 #include "tests/sim_node/support/penetration_oracle.h"
@@ -67,15 +67,15 @@ const char* kind_of(const WorldDef& world, int shape) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Largest penetration between bodies, scene by scene."};
+  tactus::sync::Arguments app{"Largest penetration between bodies, scene by scene."};
   std::string json, only;
   bool default_only = false;
   double longest_s = 1.5;
   app.add_option("--json", json, "write the table here too");
   app.add_option("--scene", only, "only scenes whose name contains this");
-  app.add_option("--seconds", longest_s, "of each scene at most")->capture_default_str();
+  app.add_option("--seconds", longest_s, "of each scene at most").show_default();
   app.add_flag("--default-only", default_only, "only the default pairing");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "penetration_table", argc, argv);
   std::vector<test::HardScene> scenes = test::hard_scenes();
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(TACTUS_SOURCE_DIR "/sim_node/scenes"))

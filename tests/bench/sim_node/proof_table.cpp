@@ -3,22 +3,22 @@
 //    bin/proof_table [--json FILE] [--stand SECONDS]     the error of each proof; exits 1 when one of ours is over its limit
 //
 // Stacks stand 60 s, which takes ODE's exact solver minutes; --stand shortens it.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sync/node/node_options.h"
 #include "tests/bench/sim_node/proofs.h"
 
 using namespace tactus::bench;
 
 int main(int argc, char** argv) {
-  CLI::App app("Errors of the simulation against closed forms");
+  tactus::sync::Arguments app("Errors of the simulation against closed forms");
   std::string json;
   double stand_s = 60;
   app.add_option("--json", json, "Writes the figures here");
-  app.add_option("--stand", stand_s, "How long stacks have to stand, s")->check(CLI::Range(0.1, 600.0));
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--stand", stand_s, "How long stacks have to stand, s").range(0.1, 600.0);
+  tactus::sync::parse_or_exit(app, "proof_table", argc, argv);
 
   std::vector<Proof> proofs = free_proofs();
   for (auto& more : {contact_proofs(stand_s), joint_proofs()})

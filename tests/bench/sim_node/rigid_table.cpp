@@ -7,7 +7,6 @@
 // its momentum against the opposite of the impulse on the hand. thin: a plate of 2 mm that the hand passes through and the box does not.
 // between: a body between the box and a wall. hole: a peg, a mesh, inserted into its hole by a virtual hand that is 1 mm and 3 degrees
 // off. stroke: over the bumpy sphere of stroke_table; change of force and torque per tick. --check: exit 1 when a row exceeds its limit.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -20,6 +19,7 @@
 #include "sim_node/scene/meshes/mesh_file.h"
 #include "sim_node/model/tool_shape.h"
 #include "sim_node/model/triangles.h"
+#include "sync/node/node_options.h"
 #include "tests/bench/haptic_node/touch_loop.h"
 #include "tests/sim_node/support/meshes.h"
 #include "tests/sim_node/support/simple_hand.h"
@@ -286,12 +286,12 @@ int main(int argc, char** argv) {
   std::string json, only;
   double seconds = 3;
   bool check = false;
-  CLI::App app{"Accuracy and smoothness of touch with six degrees of freedom."};
+  tactus::sync::Arguments app{"Accuracy and smoothness of touch with six degrees of freedom."};
   app.add_option("--json", json, "also writes the figures to this file");
-  app.add_option("--seconds", seconds, "of each stroke")->check(CLI::Range(0.1, 100.0));
+  app.add_option("--seconds", seconds, "of each stroke").range(0.1, 100.0);
   app.add_option("--only", only, "only the rows of this name: pressed, pushed, thin, between, hole or stroke");
   app.add_flag("--check", check, "exit 1 unless all rows stay within the limits");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "rigid_table", argc, argv);
   Report report;
   const auto selected = [&](const std::string& name) { return only.empty() || only == name; };
   for (const double rate_Hz : {1000.0, 2000.0, 4000.0}) {

@@ -2,7 +2,6 @@
 // rendered by all modalities. Prints JSON; tests/measure/benchmark_simulation runs all pairings.
 //
 //    bin/simulation_bench SCENE.sdf [--detector ode] [--solver quick] [--seconds 3] [--log FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -15,6 +14,7 @@
 
 #include "sim_node/model/behaviour_model.h"
 #include "sim_node/scene/load_sdf.h"
+#include "sync/node/node_options.h"
 #include "sync/text/settings.h"
 #include "tests/bench/offline/offline_world.h"
 #include "tests/bench/offline/log_renderers.h"
@@ -269,17 +269,17 @@ json rendered_by_all(const sim::WorldDef& world, const sim::Settings& settings, 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("One scene, one detector, one law of contact, rendered by all senses; prints JSON");
+  tactus::sync::Arguments app("One scene, one detector, one law of contact, rendered by all senses; prints JSON");
   std::string scene, detector = "ode", solver = "quick", log;
   double seconds = 3;
   std::vector<std::string> set;
-  app.add_option("SCENE", scene, "SDF file")->required()->check(CLI::ExistingFile);
-  app.add_option("--detector", detector)->capture_default_str();
-  app.add_option("--solver", solver)->capture_default_str();
-  app.add_option("--seconds", seconds, "of the world, with hands and without")->check(CLI::Range(1.0, 600.0));
+  app.add_option("SCENE", scene, "SDF file").required().existing_file();
+  app.add_option("--detector", detector).show_default();
+  app.add_option("--solver", solver).show_default();
+  app.add_option("--seconds", seconds, "of the world, with hands and without").range(1.0, 600.0);
   app.add_option("--set", set, "name=value, settings of sim_node");
   app.add_option("--log", log, "writes the log of the run with hands here");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "simulation_bench", argc, argv);
 
   json out = {{"scene", scene}, {"detector", detector}, {"solver", solver}, {"seconds", seconds}};
   try {

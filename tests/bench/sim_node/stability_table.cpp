@@ -3,7 +3,6 @@
 // better stability.
 //
 //    bin/stability_table [--json FILE]
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "sync/node/node_options.h"
 #include "tests/bench/sim_node/stability.h"
 #include "tests/bench/sim_node/stability_groups.h"
 #include "tests/sim_node/support/toys.h"
@@ -195,10 +195,10 @@ json groups() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Penalty and analytic contact: cost, forces, stability");
+  tactus::sync::Arguments app("Penalty and analytic contact: cost, forces, stability");
   std::string file;
   app.add_option("--json", file, "Writes the figures here");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "stability_table", argc, argv);
   json out = json::array();
   const double k = 1e4;
   double at_1ms_N_m = 0, at_60Hz_N_m = 0;

@@ -2,7 +2,6 @@
 // touch one mesh or lie in the corner of three.
 //
 //    bin/touch_model [--steps N] [--only NAME] [--json FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -15,6 +14,7 @@
 
 #include "sim_node/touch/tool_touch.h"
 #include "sim_node/model/triangles.h"
+#include "sync/node/node_options.h"
 #include "tests/bench/sim_node/touch_shapes.h"
 #include "tests/sim_node/support/meshes.h"
 #include "tests/sim_node/support/small_worlds.h"
@@ -94,11 +94,11 @@ double quantile(std::vector<double> x, double q) {
 int main(int argc, char** argv) {
   std::string json, only;
   int steps = 200;
-  CLI::App app{"Cost of the touch model of a tool."};
-  app.add_option("--steps", steps, "steps of each row of a tool with a shape")->check(CLI::Range(1, 100'000));
+  tactus::sync::Arguments app{"Cost of the touch model of a tool."};
+  app.add_option("--steps", steps, "steps of each row of a tool with a shape").range(1, 100'000);
   app.add_option("--only", only, "only the rows of a tool with a shape whose scene and tool contain this text, such as \"bowl.obj mesh\"");
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "touch_model", argc, argv);
   std::vector<Scene> scenes;
   scenes.push_back(scene_of("81,920 triangles, one mesh", 6, 1, false));
   for (const bool moving : {false, true})

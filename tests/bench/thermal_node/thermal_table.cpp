@@ -2,7 +2,6 @@
 // with a passive plate; and the pairs that a person can discriminate by published thresholds, before and after the display.
 //
 //    bin/thermal_table [--json FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "sync/node/node_options.h"
 #include "tests/bench/thermal_node/thermal_display.h"
 #include "tests/thermal_node/support/finite_differences.h"
 
@@ -255,10 +255,10 @@ json costs(const Material& m) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Accuracy of the rendered temperature, against closed forms."};
+  tactus::sync::Arguments app{"Accuracy of the rendered temperature, against closed forms."};
   std::string file;
   app.add_option("--json", file, "the figures and the traces");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "thermal_table", argc, argv);
   const std::vector<Material> ten = materials();
   json out;
   out["against_oracle"] = against_oracle(ten);

@@ -1,7 +1,6 @@
 // Draws pictures of the shipped scenes for the documentation, each into its own file in the given folder.
 //
 //    bin/draw_looks FOLDER [dark_room | bump_plane | looks | reflecting | stereo | questions]... [--samples N]
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -9,6 +8,7 @@
 #include <tactus/question_t.hpp>
 #include <tactus/scene_t.hpp>
 
+#include "sync/node/node_options.h"
 #include "tests/visual_node/golden/shipped_scene.h"
 #include "visual_node/overlay/question_panel.h"
 #include "visual_node/video/png.h"
@@ -153,12 +153,12 @@ int main(int argc, char** argv) try {
   std::string folder;
   std::vector<std::string> wanted;
   int samples = 4;
-  CLI::App app("Draws pictures of the shipped scenes for the documents.");
-  app.add_option("FOLDER", folder, "folder of the PNG files")->required()->check(CLI::ExistingDirectory);
+  tactus::sync::Arguments app("Draws pictures of the shipped scenes for the documents.");
+  app.add_option("FOLDER", folder, "folder of the PNG files").required().existing_folder();
   app.add_option("PICTURE", wanted, "pictures to draw; default: all")
-      ->check(CLI::IsMember({"dark_room", "bump_plane", "looks", "reflecting", "stereo", "questions"}));
-  app.add_option("--samples", samples, "a pixel")->check(CLI::Range(1, 16))->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+      .one_of({"dark_room", "bump_plane", "looks", "reflecting", "stereo", "questions"});
+  app.add_option("--samples", samples, "a pixel").range(1, 16).show_default();
+  tactus::sync::parse_or_exit(app, "draw_looks", argc, argv);
   for (const auto& [name, draw] : all) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
     const Picture picture = draw(samples);

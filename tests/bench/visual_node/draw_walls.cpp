@@ -2,7 +2,6 @@
 // sides of an edge, compared with neighbours within a wall.
 //
 //    bin/draw_walls OUT.png [SCENE.sdf] [--room ROOM] [--edge PIXELS] [--at X Y Z] [--set name=value]...
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include "sim_node/scene/scene_assets.h"
 #include "sync/assets/scene_sender.h"
 #include "sync/bus/bus.h"
+#include "sync/node/node_options.h"
 #include "sync/text/settings.h"
 #include "visual_node/devices/display.h"
 #include "visual_node/gl/renderer.h"
@@ -72,15 +72,15 @@ int main(int argc, char** argv) try {
   int edge = 400;
   std::vector<std::string> set;
   std::vector<double> at;
-  CLI::App app("Draws the pictures of all walls of a room, unfolded.");
-  app.add_option("OUT", out, "PNG file")->required();
-  app.add_option("SCENE", scene_file, "SDF file")->check(CLI::ExistingFile);
-  app.add_option("--room", room, "cave4 or cave6")->check(CLI::IsMember({"cave4", "cave6"}))->capture_default_str();
-  app.add_option("--edge", edge, "of each wall, pixels; a multiple of 4")->check(CLI::Range(320, 2048))->capture_default_str();
-  app.add_option("--at", at, "where the person's eye is, m; not given: where the scene's camera is")->expected(3);
+  tactus::sync::Arguments app("Draws the pictures of all walls of a room, unfolded.");
+  app.add_option("OUT", out, "PNG file").required();
+  app.add_option("SCENE", scene_file, "SDF file").existing_file();
+  app.add_option("--room", room, "cave4 or cave6").one_of({"cave4", "cave6"}).show_default();
+  app.add_option("--edge", edge, "of each wall, pixels; a multiple of 4").range(320, 2048).show_default();
+  app.add_option("--at", at, "where the person's eye is, m; not given: where the scene's camera is").expected(3);
   app.add_option("--set", set, "a setting of visual_node, name=value");
   app.add_option("--json", json, "also writes the figures to this file");
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::parse_or_exit(app, "draw_walls", argc, argv);
   edge = edge / 4 * 4;
 
   std::vector<std::string> said;

@@ -3,7 +3,6 @@
 // the machine affects all of them.
 //
 //    bin/picture_cost triangles|bodies|video [--pictures N] [--threads N] [--json FILE] [--png FOLDER]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 
 #include "lcmtypes/vectors.h"
 #include "sync/clocks/pacing.h"
+#include "sync/node/node_options.h"
 #include "tests/bench/visual_node/picture_scenes.h"
 #include "visual_node/devices/display.h"
 #include "visual_node/gl/renderer.h"
@@ -182,20 +182,20 @@ nlohmann::json video(const Options& options) {
 
 int main(int argc, char** argv) try {
   Options options;
-  CLI::App app("Cost of a picture: triangles, bodies, video.");
+  tactus::sync::Arguments app("Cost of a picture: triangles, bodies, video.");
   app.add_option("--pictures", options.pictures, "of each row")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+      .range(1, 100000)
+      .show_default();
   app.add_option("TABLE", options.table, "what to measure")
-      ->required()
-      ->check(CLI::IsMember({"triangles", "bodies", "video"}));
+      .required()
+      .one_of({"triangles", "bodies", "video"});
   app.add_option("--threads", options.threads,
                  "threads of a software renderer; 0: 2, or 1 with a video, as in visual_node")
-      ->check(CLI::Range(0, 64))
-      ->capture_default_str();
+      .range(0, 64)
+      .show_default();
   app.add_option("--json", options.json, "file for the figures");
-  app.add_option("--png", options.png, "folder for a picture of each row")->check(CLI::ExistingDirectory);
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--png", options.png, "folder for a picture of each row").existing_folder();
+  tactus::sync::parse_or_exit(app, "picture_cost", argc, argv);
   if (options.threads == 0) options.threads = options.table == "video" ? 1 : 2;
   setenv("LP_NUM_THREADS", std::to_string(options.threads).c_str(), 1);
   visual::configure_software_renderer();

@@ -2,7 +2,6 @@
 // surfaces and to the fence after the flashes. The steps are interleaved, so that other load on the machine affects all of them.
 //
 //    bin/picture_quality [SCENE.sdf] [--pictures N] [--png FOLDER]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -15,6 +14,7 @@
 #include "sync/assets/scene_sender.h"
 #include "sync/bus/bus.h"
 #include "sync/clocks/pacing.h"
+#include "sync/node/node_options.h"
 #include "visual_node/devices/display.h"
 #include "visual_node/frame/marker.h"
 #include "visual_node/gl/renderer.h"
@@ -44,11 +44,11 @@ double ms_since(sync::HostTime begin) { return 1e3 * sync::to_seconds(sync::host
 int main(int argc, char** argv) try {
   std::string scene_file = TACTUS_SOURCE_DIR "/sim_node/scenes/dark_room.sdf", png;
   int pictures = 200;
-  CLI::App app("Cost of a picture at each quality step of visual_node.");
-  app.add_option("SCENE", scene_file, "SDF file")->check(CLI::ExistingFile);
-  app.add_option("--pictures", pictures, "of each step")->check(CLI::Range(1, 100000))->capture_default_str();
-  app.add_option("--png", png, "folder to write the last picture of each step to")->check(CLI::ExistingDirectory);
-  CLI11_PARSE(app, argc, argv);
+  tactus::sync::Arguments app("Cost of a picture at each quality step of visual_node.");
+  app.add_option("SCENE", scene_file, "SDF file").existing_file();
+  app.add_option("--pictures", pictures, "of each step").range(1, 100000).show_default();
+  app.add_option("--png", png, "folder to write the last picture of each step to").existing_folder();
+  tactus::sync::parse_or_exit(app, "picture_quality", argc, argv);
 
   std::vector<std::string> said;
   sync::Bus bus(sync::Identity::fresh("bench", 1), {.memory = true});

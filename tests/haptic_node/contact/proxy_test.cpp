@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -10,8 +11,6 @@ using namespace tactus::haptic;
 using namespace tactus::haptic::test;
 
 namespace {
-
-constexpr double kDt = 1e-3;
 
 Surface surface(const Vector3d& normal, double offset, double friction_static, double friction_dynamic) {
   Surface s;

@@ -7,6 +7,7 @@
 #include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/contact/proxy.h"
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -15,7 +16,6 @@ using namespace tactus::haptic::test;
 
 namespace {
 
-constexpr double kDt = 1e-3;
 sync::SimTime sim_ms(double ms) { return sync::sim_time(static_cast<std::int64_t>(ms * 1e6)); }
 
 // Surfaces and proxy together, with a fixed device.

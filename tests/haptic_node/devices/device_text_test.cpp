@@ -23,8 +23,8 @@ struct Pressing : Device {
   double force_N = 0;
 };
 
-struct Rig {
-  explicit Rig(std::unique_ptr<Device> device)
+struct TextRig {
+  explicit TextRig(std::unique_ptr<Device> device)
       : config(resolve_config(world, "", {})), safety(safety_limits(config.settings)) {
     session.emplace(world, config, std::move(device), sync::OwnClock{1, 0, nullptr}, safety);
   }
@@ -56,12 +56,12 @@ struct Rig {
   int ms = 1;
 };
 
-std::unique_ptr<Device> arm() { return std::make_unique<External>("arm", Vector3d::Zero(), 0.05); }
+std::unique_ptr<Device> driven_arm() { return std::make_unique<External>("arm", Vector3d::Zero(), 0.05); }
 
 }  // namespace
 
 TEST_CASE("The health text names the timing of a slow driver and the stiffness that it leaves") {
-  Rig fast(arm()), slow(arm());
+  TextRig fast(driven_arm()), slow(driven_arm());
   for (int i = 0; i < 1000; ++i) {
     fast.send();
     fast.tick();
@@ -74,7 +74,7 @@ TEST_CASE("The health text names the timing of a slow driver and the stiffness t
 }
 
 TEST_CASE("States ahead of the clock fade the force to zero within 20 ms and are named") {
-  Rig r(arm());
+  TextRig r(driven_arm());
   for (int i = 0; i < 500; ++i) r.send(), r.tick();
   REQUIRE(r.force_N() > 0.3);
   for (int i = 0; i < 200; ++i) {
@@ -96,7 +96,7 @@ TEST_CASE("A device whose state is not finite is lost, and its force fades to ze
   auto made = std::make_unique<Pressing>();
   Pressing& device = *made;
   device.state.position = {0, 0, 0.002};
-  Rig r(std::move(made));
+  TextRig r(std::move(made));
   for (int i = 0; i < 200; ++i) r.tick();
   REQUIRE(device.force_N > 0.5);
   DeviceState& s = device.state;

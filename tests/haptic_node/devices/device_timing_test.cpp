@@ -11,10 +11,10 @@ using namespace tactus::haptic;
 
 namespace {
 
-sync::HostTime at_s(double s) { return sync::host_time(5'000'000'000 + std::llround(s * 1e9)); }
+sync::HostTime node_s(double s) { return sync::host_time(5'000'000'000 + std::llround(s * 1e9)); }
 
 // A driver with a clock of its own, read by a node with ticks of 1 ms.
-struct Rig {
+struct TimingRig {
   double interval_s, transit_s;
   DeviceTiming timing{false};
   double next_s = 0;
@@ -27,9 +27,9 @@ struct Rig {
     while (!in_transit.empty() && in_transit.front() + transit_s <= now_s + 1e-12) {
       const double s = in_transit.front();
       in_transit.pop_front();
-      timing.on_state(77'000'000'000 + std::llround(s * 1e9), transit_s, at_s(s + transit_s));
+      timing.on_state(77'000'000'000 + std::llround(s * 1e9), transit_s, node_s(s + transit_s));
     }
-    return timing.step(at_s(now_s));
+    return timing.step(node_s(now_s));
   }
 };
 
@@ -40,7 +40,7 @@ TEST_CASE("The timing of a steady driver is its interval, its transit and whole 
   std::uniform_real_distribution<double> u(0, 1);
   for (int round = 0; round < 200; ++round) {
     const double interval_s = 2.5e-4 * std::pow(80, u(random)), transit_s = 0.01 * u(random);
-    Rig rig{interval_s, transit_s};
+    TimingRig rig{interval_s, transit_s};
     CAPTURE(interval_s, transit_s);
     DeviceLoop loop;
     double motion_s = 0;
@@ -67,8 +67,8 @@ TEST_CASE("A driver that applies forces on arrival has no wait for its next stat
   DeviceTiming timing(true);
   DeviceLoop loop;
   for (int ms = 0; ms < 1000; ++ms) {
-    if (ms % 20 == 2) timing.on_state(1'000'000LL * (ms - 2), 0.002, at_s(1e-3 * ms));
-    loop = timing.step(at_s(1e-3 * ms));
+    if (ms % 20 == 2) timing.on_state(1'000'000LL * (ms - 2), 0.002, node_s(1e-3 * ms));
+    loop = timing.step(node_s(1e-3 * ms));
   }
   CHECK(loop.at_once);
   CHECK(loop.delay_s == Approx(0.004).margin(1e-6));
@@ -76,7 +76,7 @@ TEST_CASE("A driver that applies forces on arrival has no wait for its next stat
 
 TEST_CASE("A driver that slows down is measured during its first long gap") {
   const double slow_s = GENERATE(0.005, 0.01, 0.02);
-  Rig rig{1e-3, 1e-4};
+  TimingRig rig{1e-3, 1e-4};
   for (int ms = 0; ms < 1000; ++ms) REQUIRE(rig.tick().period_s < 2.1e-3);
   rig.interval_s = slow_s;
   double reached_s = 1;
@@ -88,7 +88,7 @@ TEST_CASE("A driver that slows down is measured during its first long gap") {
 }
 
 TEST_CASE("One late state softens for a few seconds only") {
-  Rig rig{1e-3, 1e-4};
+  TimingRig rig{1e-3, 1e-4};
   for (int ms = 0; ms < 500; ++ms) rig.tick();
   rig.next_s += 0.03;
   for (int ms = 0; ms < 32; ++ms) rig.tick();
@@ -104,8 +104,8 @@ TEST_CASE("Stamps and transits of any value leave the timing finite and bounded"
   double now_s = 0;
   for (int k = 0; k < 20000; ++k) {
     now_s += random() % 3 == 0 ? 0 : 1e-3;
-    timing.on_state(static_cast<std::int64_t>(random() >> (1 + random() % 60)), transits[random() % 7], at_s(now_s));
-    const DeviceLoop loop = timing.step(at_s(now_s));
+    timing.on_state(static_cast<std::int64_t>(random() >> (1 + random() % 60)), transits[random() % 7], node_s(now_s));
+    const DeviceLoop loop = timing.step(node_s(now_s));
     for (const double value : {loop.period_s, loop.interval_s, loop.span_s, loop.force_delay_s, loop.delay_s}) {
       REQUIRE(value >= 0);
       REQUIRE(value <= DeviceTiming::kMax_s);

@@ -32,8 +32,8 @@ struct UnreliableDevice : Device {
   bool lost = false;
 };
 
-struct Rig {
-  Rig() : config(resolve_config(world, "", {})), safety(safety_limits(config.settings)) {
+struct LostRig {
+  LostRig() : config(resolve_config(world, "", {})), safety(safety_limits(config.settings)) {
     auto made = std::make_unique<UnreliableDevice>();
     device = made.get();
     session.emplace(world, config, std::move(made), sync::OwnClock{1, 0, nullptr}, safety);
@@ -58,7 +58,7 @@ struct Rig {
 }  // namespace
 
 TEST_CASE("The force on a lost device fades to zero, and the state reports it") {
-  Rig r;
+  LostRig r;
   for (int i = 0; i < 200; ++i) r.tick();
   const double before = r.push();
   REQUIRE(before > 0.5);
@@ -81,7 +81,7 @@ TEST_CASE("The force on a lost device fades to zero, and the state reports it") 
 }
 
 TEST_CASE("The force of a device that returns fades in at any position") {
-  Rig r;
+  LostRig r;
   for (int i = 0; i < 200; ++i) r.tick();
   const double before = r.push();
   r.device->lost = true;
@@ -115,7 +115,7 @@ TEST_CASE("The force of a device that returns fades in at any position") {
 }
 
 TEST_CASE("A device that never answered has no force until it answers") {
-  Rig r;
+  LostRig r;
   r.device->lost = true;
   for (int i = 0; i < 200; ++i) {
     r.tick();
@@ -127,7 +127,7 @@ TEST_CASE("A device that never answered has no force until it answers") {
 }
 
 TEST_CASE("A device that is lost every second tick has no jump of the force") {
-  Rig r;
+  LostRig r;
   for (int i = 0; i < 200; ++i) r.tick();
   double last = r.push();
   for (int i = 0; i < 1000; ++i) {

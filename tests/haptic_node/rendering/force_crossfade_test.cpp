@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "haptic_node/contact/proxy.h"
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus::haptic;
@@ -10,7 +11,7 @@ using namespace tactus::haptic::test;
 
 namespace {
 
-constexpr double kDt = 1e-3, kRecovery_s = 0.015, kAtOnce_N_s = 200;
+constexpr double kRecovery_s = 0.015, kAtOnce_N_s = 200;
 
 Surface bound(std::int64_t id, double depth_m = 0.001) {
   Surface s;

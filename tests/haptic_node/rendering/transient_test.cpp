@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <tactus/presentation_t.hpp>
 
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -11,7 +12,6 @@ using namespace tactus::haptic::test;
 
 namespace {
 
-constexpr double kDt = 1e-3;
 const sync::Nanoseconds kUncertain{500'000};
 
 Hit hit(std::int64_t id, double ms) {

@@ -6,6 +6,7 @@
 #include <tactus/touch_model_t.hpp>
 
 #include "tests/haptic_node/support/episode.h"
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -13,8 +14,6 @@ using namespace tactus::haptic;
 using namespace tactus::haptic::test;
 
 namespace {
-
-constexpr double kDt = 1e-3;
 
 // A hand and one body, both with motion set by the test, joined by a spring through an observer. The energy of the
 // body is reported at once, or never.

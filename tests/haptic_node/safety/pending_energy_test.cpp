@@ -6,12 +6,15 @@
 #include <deque>
 #include <functional>
 
+#include "tests/haptic_node/support/tick.h"
+
 using namespace tactus::haptic;
 using Eigen::Vector3d;
+using tactus::haptic::test::kDt;
 
 namespace {
 
-constexpr double kDt = 1e-3, kMax_N = 8;
+constexpr double kMax_N = 8;
 
 // A body that a hand pushes down and other forces hold, and the estimate of the energy that it received, from
 // reports that are some milliseconds late until they stop.

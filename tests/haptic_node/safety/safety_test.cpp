@@ -4,6 +4,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -11,7 +12,6 @@ using namespace tactus::haptic;
 using namespace tactus::haptic::test;
 
 namespace {
-constexpr double kDt = 1e-3;
 }
 
 TEST_CASE("The force obeys its limits of magnitude and slew for any wanted force") {

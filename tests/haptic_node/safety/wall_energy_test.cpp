@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/trial.h"
 #include "tests/haptic_node/support/world.h"
 
@@ -11,8 +12,6 @@ using namespace tactus::haptic;
 using namespace tactus::haptic::test;
 
 namespace {
-
-constexpr double kDt = 1e-3;
 
 // A spring of 1 N/mm whose end the test moves; force and motion along z.
 struct Spring {

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kG = 9.81, kH = 0.001;
+constexpr double kGravity_m_s2 = 9.81, kH = 0.001;
 
 // A planar chain of n rods by the Lagrangian in absolute angles (from the x axis, upwards), independent of the
 // algorithm under test: the centre of rod k lies at the sum of reach(k, i) e(angle_i).
@@ -39,7 +39,7 @@ struct PlanarChain {
     Eigen::MatrixXd m(n, n);
     VectorXd force(n);
     for (int i = 0; i < n; ++i) {
-      force[i] = -kG * moment[i] * std::cos(angle[i]);
+      force[i] = -kGravity_m_s2 * moment[i] * std::cos(angle[i]);
       for (int j = 0; j < n; ++j) {
         m(i, j) = coupling(i, j) * std::cos(angle[i] - angle[j]) + (i == j ? inertia : 0);
         force[i] -= coupling(i, j) * std::sin(angle[i] - angle[j]) * rate[j] * rate[j];
@@ -68,7 +68,7 @@ TEST_CASE("A horizontal chain of eleven universal joints keeps its energy within
   state.rates[vertical_first ? 0 : 1] = about_vertical;
   s.set_state(state);
   // Potential energy relative to the pivot, with all rods at their distance below it: 2.968 J.
-  const double scale = 0.05 * kG * 0.1 * 11 * 11 / 2, start = energy_J(s);
+  const double scale = 0.05 * kGravity_m_s2 * 0.1 * 11 * 11 / 2, start = energy_J(s);
   double worst = 0;
   for (int i = 0; i < 5000; ++i) {
     s.step(kH);
@@ -110,7 +110,7 @@ TEST_CASE("Small oscillations of a chain match its normal modes") {
   const PlanarChain chain(n);
   Eigen::MatrixXd mass = chain.coupling;
   mass.diagonal().array() += chain.inertia;
-  const Eigen::MatrixXd stiffness = (kG * chain.moment).asDiagonal();
+  const Eigen::MatrixXd stiffness = (kGravity_m_s2 * chain.moment).asDiagonal();
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness, mass);
   const int axis = GENERATE(0, 1);
   for (int mode = 0; mode < n; ++mode) {
@@ -140,7 +140,7 @@ TEST_CASE("A rod swings with the period of the elliptic integral at any amplitud
   state.positions[0] = amplitude;
   s.set_state(state);
   const double inertia = links[0].inertia_kg_m2(1, 1) + 0.05 * 0.05 * 0.05;
-  const double period = 4 * std::sqrt(inertia / (0.05 * kG * 0.05)) * std::comp_ellint_1(std::sin(amplitude / 2));
+  const double period = 4 * std::sqrt(inertia / (0.05 * kGravity_m_s2 * 0.05)) * std::comp_ellint_1(std::sin(amplitude / 2));
   double first = -1, last = amplitude, end = 0;
   int crossings = 0;
   for (int i = 1; crossings < 11; ++i) {

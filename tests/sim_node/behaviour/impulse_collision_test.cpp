@@ -2,17 +2,12 @@
 #include <cmath>
 
 #include "tests/sim_node/support/articulated_trees.h"
+#include "tests/sim_node/support/small_worlds.h"
 #include "tests/sim_node/support/toys.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;
 using Eigen::Vector3d;
-
-namespace {
-
-Eigen::Isometry3d at(double x, double y, double z) { return Eigen::Isometry3d(Eigen::Translation3d(x, y, z)); }
-
-}  // namespace
 
 TEST_CASE("In Newton's cradle as many balls leave as arrive, touching or separated") {
   const double apart = GENERATE(0.0, 1e-4);

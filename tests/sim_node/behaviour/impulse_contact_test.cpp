@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "sync/bus/identity.h"
+#include "tests/sim_node/support/small_worlds.h"
 #include "tests/sim_node/support/toys.h"
 
 using namespace tactus::sim;
@@ -11,11 +12,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kH = 0.001;
+constexpr double kToyStep_s = 0.001;
 
-Eigen::Isometry3d at(double x, double y, double z) { return Eigen::Isometry3d(Eigen::Translation3d(x, y, z)); }
-
-void run(Toys& toys, double seconds, double h = kH) {
+void run_for(Toys& toys, double seconds, double h = kToyStep_s) {
   for (int i = 0; i < static_cast<int>(std::lround(seconds / h)); ++i) toys.step(h);
 }
 
@@ -32,7 +31,7 @@ TEST_CASE("A box on an incline sticks if mu exceeds tan(theta) and slides otherw
     const int box =
         toys.box(0.5, {0.1, 0.1, 0.04}, tilt * at(0, 0, 0.02) * Eigen::AngleAxisd(yaw, Vector3d::UnitZ()), mu);
     const Vector3d start = toys.motion(box).centre_m;
-    run(toys, 0.5);
+    run_for(toys, 0.5);
     const Vector3d moved = tilt.linear().transpose() * (toys.motion(box).centre_m - start);
     const Vector3d speed = tilt.linear().transpose() * toys.motion(box).velocity_m_s;
     INFO("yaw " << yaw << " mu/tan " << factor << " moved " << moved.transpose());
@@ -55,7 +54,7 @@ TEST_CASE("A sliding box decelerates by mu g and keeps its direction") {
     const int box = toys.box(2, {0.2, 0.1, 0.05}, at(0, 0, 0.025), 0.4);
     const Vector3d along(std::cos(heading), std::sin(heading), 0);
     toys.world.free_body(box).velocity_m_s = 2 * along;
-    run(toys, 0.2);
+    run_for(toys, 0.2);
     const Vector3d v = toys.motion(box).velocity_m_s;
     INFO("heading " << heading << " v " << v.transpose());
     // A friction pyramid would brake by up to 41 % more. The requirement is 2 %; the iterations leave much less.
@@ -75,11 +74,11 @@ TEST_CASE("A sliding ball rolls at 5/7 of its speed after the predicted time") {
   int step = 0;
   const auto& b = toys.world.free_body(ball);
   while (b.velocity_m_s.x() - r * b.spin_rad_s.y() > 1e-6) {
-    toys.step(kH);
+    toys.step(kToyStep_s);
     REQUIRE(++step < 3000);
   }
-  CHECK(step * kH == Approx(rolls_at).margin(1.5 * kH));
-  run(toys, 0.1);
+  CHECK(step * kToyStep_s == Approx(rolls_at).margin(1.5 * kToyStep_s));
+  run_for(toys, 0.1);
   // The step in which it begins to roll fits exactly: no error is left.
   CHECK(toys.motion(ball).velocity_m_s.x() == Approx(5.0 / 7 * v0).epsilon(1e-9));
   CHECK(toys.motion(ball).spin_rad_s.y() == Approx(5.0 / 7 * v0 / r).epsilon(1e-9));
@@ -92,7 +91,7 @@ TEST_CASE("A block tips if friction exceeds width over height and slides otherwi
     Toys toys;
     toys.plane(tilt.linear() * Vector3d::UnitZ(), {0, 0, 0}, mu);
     const int block = toys.box(1, {width, 0.1, height}, tilt * at(0, 0, height / 2), mu);
-    run(toys, 0.7);
+    run_for(toys, 0.7);
     return (toys.motion(block).orientation * Vector3d::UnitZ()).dot(tilt.linear() * Vector3d::UnitZ()) < 0.95;
   };
   const double edge = width / height;
@@ -110,7 +109,7 @@ TEST_CASE("Contacts carry the weight of resting bodies") {
     toys.box(1.7 - 0.3 * i, {0.1, 0.2, 0.1}, at(0.5 * i, 0, 0.05));
     weight += (1.7 - 0.3 * i) * kToyG;
   }
-  run(toys, 0.2);
+  run_for(toys, 0.2);
   CHECK(toys.force_N() == Approx(weight).epsilon(1e-6));
   for (int i = 1; i <= 4; ++i) CHECK(toys.motion(i).centre_m.z() == Approx(0.05).margin(1e-9));
 }
@@ -134,7 +133,7 @@ TEST_CASE("Stacks of five and ten boxes stand") {
   Toys toys;
   toys.plane({0, 0, 1}, {0, 0, 0});
   for (int i = 0; i < n; ++i) toys.box(0.5, {0.1, 0.1, 0.1}, at(0, 0, 0.05 + 0.1 * i));
-  run(toys, 20, h);
+  run_for(toys, 20, h);
   for (int i = 1; i <= n; ++i) {
     const Vector3d p = toys.motion(i).centre_m;
     INFO("box " << i << " of " << n << " at " << p.transpose());
@@ -162,9 +161,9 @@ TEST_CASE("Painleve's rod jams for mu above 4/3 without gaining energy") {
   };
   double had = energy(), least = 1;
   for (int i = 0; i < 1000; ++i) {
-    toys.step(kH);
+    toys.step(kToyStep_s);
     // The leapfrog velocity is half a step behind its height: the sum varies by m g v h / 2.
-    const double sway = mass * kToyG * kH * (1 + b.velocity_m_s.norm());
+    const double sway = mass * kToyG * kToyStep_s * (1 + b.velocity_m_s.norm());
     REQUIRE(energy() < had + sway);
     least = std::min(least, toys.min_gap_m());
   }
@@ -181,7 +180,7 @@ TEST_CASE("A ball pushed into a corner of three planes rests") {
   const int ball = toys.ball(0.5, 0.05, {0.06, 0.07, 0.05}, 0.3);
   for (int i = 0; i < 1000; ++i) {
     toys.world.add_force(ball, {-2, -3, 0}, toys.motion(ball).centre_m);
-    toys.step(kH);
+    toys.step(kToyStep_s);
   }
   CHECK((toys.motion(ball).centre_m - Vector3d(0.05, 0.05, 0.05)).norm() < 1e-6);
   CHECK(toys.motion(ball).spin_rad_s.norm() < 1e-6);
@@ -191,7 +190,7 @@ TEST_CASE("A free body follows the parabola and keeps its angular momentum") {
   Toys toys;
   const int box = toys.box(2, {0.1, 0.2, 0.4}, at(0, 0, 50));
   auto& b = toys.world.free_body(box);
-  b.velocity_m_s = {1, -2, 3 + kH / 2 * kToyG};
+  b.velocity_m_s = {1, -2, 3 + kToyStep_s / 2 * kToyG};
   b.spin_rad_s = {0.05, 6, 0.1};
   const auto momentum = [&] {
     return Vector3d(b.orientation * (b.inertia_kg_m2 * (b.orientation.conjugate() * b.spin_rad_s)));
@@ -200,8 +199,8 @@ TEST_CASE("A free body follows the parabola and keeps its angular momentum") {
   const double energy = l.dot(b.spin_rad_s);
   double worst = 0, least = 1;
   for (int n = 1; n <= 2000; ++n) {
-    toys.step(kH);
-    const double t = n * kH;
+    toys.step(kToyStep_s);
+    const double t = n * kToyStep_s;
     worst = std::max(worst, (b.centre_m - Vector3d(t, -2 * t, 50 + 3 * t - kToyG * t * t / 2)).norm());
     least = std::min(least, (b.orientation.conjugate() * b.spin_rad_s).y());
   }
@@ -220,7 +219,7 @@ TEST_CASE("Two runs of the impulse world are bit-identical") {
     for (int i = 0; i < 6; ++i) toys.ball(0.1, 0.04, {0.5 + 0.05 * (i % 2), 0.01 * i, 0.1 + 0.1 * i}, 0.4, 0.7);
     std::vector<double> states;
     for (int i = 0; i < 600; ++i) {
-      toys.step(kH);
+      toys.step(kToyStep_s);
       for (const BodyMotion& m : toys.world.motions())
         for (int k = 0; k < 3; ++k)
           states.insert(states.end(), {m.centre_m[k], m.velocity_m_s[k], m.spin_rad_s[k]});

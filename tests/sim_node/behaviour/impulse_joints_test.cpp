@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kH = 0.001;
+constexpr double kWheelStep_s = 0.001;
 
 // A wheel of 0.01 kg m^2 on an axle along z.
 struct Wheel {
@@ -28,7 +28,7 @@ struct Wheel {
   }
   void run(double seconds, double torque = 0) {
     set_torque(world.system_of(body), 0, torque);
-    for (int i = 0; i < static_cast<int>(std::lround(seconds / kH)); ++i) world.step({}, kH);
+    for (int i = 0; i < static_cast<int>(std::lround(seconds / kWheelStep_s)); ++i) world.step({}, kWheelStep_s);
   }
   double angle() { return world.system_of(body).state().positions[0]; }
   double rate() { return world.system_of(body).state().rates[0]; }
@@ -92,7 +92,7 @@ TEST_CASE("Springs settle at equilibrium for any stiffness and damping") {
     w.build();
     double largest = 0;
     for (int i = 0; i < 2000; ++i) {
-      w.world.step({}, kH);
+      w.world.step({}, kWheelStep_s);
       largest = std::max(largest, std::abs(w.angle() - 0.1));
     }
     CHECK(largest <= 0.1 + 1e-12);
@@ -125,21 +125,21 @@ TEST_CASE("A chain that falls on the floor rests with its weight shared between 
     for (JointAxis& a : links.back().axes) a.damping = 2e-3;
   }
   // Folded, so that no link is below the floor at the start.
-  articulated::ArticulatedSystem system(links, kH);
+  articulated::ArticulatedSystem system(links, kWheelStep_s);
   auto state = system.state();
   state.positions[7] = 1.2;
   state.positions[9] = 0.5;
   system.set_state(state);
   const int chain = add_system(toys.world, std::move(system));
   for (int i = 0; i < 8; ++i) toys.capsule(chain + i, 0.08, 0.01, {0, 0, 1}, 0.6);
-  for (int i = 0; i < 6000; ++i) toys.step(kH);
+  for (int i = 0; i < 6000; ++i) toys.step(kWheelStep_s);
   double fastest = 0;
   for (int i = 0; i < 8; ++i) fastest = std::max(fastest, toys.motion(chain + i).velocity_m_s.norm());
   CHECK(fastest < 5e-3);
   CHECK(toys.min_gap_m() > -5e-4);
   double force = 0;
   for (int i = 0; i < 100; ++i) {
-    toys.step(kH);
+    toys.step(kWheelStep_s);
     force += toys.force_N() / 100;
   }
   CHECK(force > 0.05 * kToyG);
@@ -159,7 +159,7 @@ TEST_CASE("Boxes and links carry each other's weight in one solve") {
     const int body = add_system(toys.world, articulated::ArticulatedSystem({lever}));
     toys.capsule(body, 0.6, 0.01, {1, 0, 0}, 0.8);
     const int left = toys.ball(0.1, 0.02, {-0.2, 0, 0.03}, 0.8), right = toys.ball(0.2, 0.02, {0.1, 0, 0.03}, 0.8);
-    for (int i = 0; i < 500; ++i) toys.step(kH);
+    for (int i = 0; i < 500; ++i) toys.step(kWheelStep_s);
     CHECK(std::abs(toys.world.system_of(body).state().positions[0]) < 1e-6);
     CHECK(toys.force_N() == Approx(0.3 * kToyG).epsilon(1e-6));
     CHECK(toys.motion(left).centre_m.z() == Approx(0.03).margin(1e-6));

@@ -3,6 +3,7 @@
 
 #include "sim_node/behaviour/solver.h"
 #include "tests/sim_node/support/small_worlds.h"
+#include "tests/sim_node/support/solver_steps.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;
@@ -16,12 +17,6 @@ Settings by_impulse() {
   s.solver = "impulse";
   s.detector = "auto";
   return s;
-}
-
-const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<std::size_t>(i)]; }
-
-void run(Solver& s, double seconds) {
-  for (int i = 0; i < std::lround(seconds / kStep); ++i) s.step();
 }
 
 void set_gravity(Solver& s, const Vector3d& g) { s.apply({.kind = SceneChange::kGravity, .values = g}); }

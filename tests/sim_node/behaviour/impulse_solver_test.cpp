@@ -6,6 +6,7 @@
 #include "sim_node/scene/load_sdf.h"
 #include "sync/bus/identity.h"
 #include "tests/sim_node/support/small_worlds.h"
+#include "tests/sim_node/support/solver_steps.h"
 #include "tests/source_dir.h"
 
 using namespace tactus::sim;
@@ -14,17 +15,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-Settings by_impulse() {
+Settings impulse_solver() {
   Settings s;
   s.solver = "impulse";
   return s;
 }
-
-double angle_about(const Eigen::Quaterniond& q, const Vector3d& axis) {
-  return 2 * std::atan2(q.vec().dot(axis), q.w());
-}
-
-const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<std::size_t>(i)]; }
 
 }  // namespace
 
@@ -42,7 +37,7 @@ TEST_CASE("In the impulse solver joint angles and limits follow SDF, from either
   joint.axes[1].lower = -0.3;
   joint.axes[1].upper = 0.5;
   const auto turned = [&](const Vector3d& torque) {
-    Solver s(w, by_impulse());
+    Solver s(w, impulse_solver());
     const Vector3d lever = torque.unitOrthogonal(), f = torque.normalized().cross(lever) * torque.norm() / 2;
     for (int i = 0; i < 2000; ++i) {
       s.add_force(moved, f, body(s, moved).centre_m + lever);
@@ -70,7 +65,7 @@ TEST_CASE("In the impulse solver a chain keeps its energy better than in ODE and
     for (JointAxis& a : j.axes) a.axis = lie.linear() * a.axis;
   }
   w.shapes.clear();
-  Solver s(w, by_impulse());
+  Solver s(w, impulse_solver());
   const auto energy = [&] {
     double sum = 0;
     for (const BodyMotion& b : s.bodies())
@@ -94,7 +89,7 @@ TEST_CASE("In the impulse solver a box rests, a ball bounces and a stack stands"
   add_floor(w, 0.5, 1);
   const int ball = add_ball(w, 0.2, 0.03, {1, 0, 0.53}, 0.5, 0.8);
   for (int i = 0; i < 5; ++i) add_box(w, 0.5, {0.1, 0.1, 0.1}, at(0, 0, 0.05 + 0.1 * i));
-  Solver s(w, by_impulse());
+  Solver s(w, impulse_solver());
   double top = 0;
   for (int i = 0; i < 3000; ++i) {
     s.step();
@@ -120,14 +115,14 @@ TEST_CASE("In the impulse solver a box rests, a ball bounces and a stack stands"
 TEST_CASE("The impulse solver rejects joints that close a loop by name") {
   WorldDef w = chain_world(3);
   add_joint(w, JointKind::kBall, -1, 2, {0, 0, 1.7}, {1, 0, 0}).name = "bite";
-  CHECK_THROWS_WITH(Solver(w, by_impulse()), Catch::Contains("bite") && Catch::Contains("loop"));
+  CHECK_THROWS_WITH(Solver(w, impulse_solver()), Catch::Contains("bite") && Catch::Contains("loop"));
 }
 
 TEST_CASE("The impulse solver runs the dark room identically twice, with balls that stay on the table") {
   const auto run = [](std::uint64_t& digest, double& fan, double& lowest) {
     std::vector<std::string> warnings;
     const WorldDef world = load_sdf(tactus::source_dir() + "/sim_node/scenes/dark_room.sdf", warnings);
-    Settings settings = by_impulse();
+    Settings settings = impulse_solver();
     Simulation s(world, settings);
     s.start(11);
     for (int i = 0; i < 3000; ++i) s.step({});

@@ -3,6 +3,7 @@
 #include "sim_node/behaviour/ode_joints.h"
 #include "sim_node/behaviour/solver.h"
 #include "tests/sim_node/support/small_worlds.h"
+#include "tests/sim_node/support/solver_steps.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;
@@ -34,8 +35,6 @@ struct Jointed {
     return s.bodies()[0].orientation;
   }
 };
-
-double angle_about(const Eigen::Quaterniond& q, const Vector3d& axis) { return 2 * std::atan2(q.vec().dot(axis), q.w()); }
 
 }  // namespace
 

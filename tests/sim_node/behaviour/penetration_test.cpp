@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-Settings by_impulse(double h) {
+Settings impulses_at(double h) {
   Settings s;
   s.solver = "impulse";
   s.detector = "auto";
@@ -22,7 +22,7 @@ Settings by_impulse(double h) {
 constexpr double kAllowed_m = 1e-5;
 
 double deepest(const HardScene& scene, double h, double seconds) {
-  Solver s(scene.world, by_impulse(h));
+  Solver s(scene.world, impulses_at(h));
   PenetrationOracle oracle(scene.world);
   double worst = 0;
   for (int i = 0; i < seconds / h; ++i) {
@@ -92,10 +92,10 @@ TEST_CASE("Irregular meshes that fall on each other do not penetrate") {
 TEST_CASE("A step is subdivided only if rotation would pass through a thin wall") {
   WorldDef w = thin_wall(0);
   const int box = add_box(w, 0.2, {0.3, 0.02, 0.02}, at(0, 0, 0.03));
-  Solver still(w, by_impulse(0.001));
+  Solver still(w, impulses_at(0.001));
   still.step();
   CHECK(still.report()->substeps == 1);
-  Solver turning(w, by_impulse(0.001));
+  Solver turning(w, impulses_at(0.001));
   turning.set_spin(box, {0, 150, 0});
   for (int i = 0; i < 50; ++i) {
     turning.step();
@@ -111,7 +111,7 @@ TEST_CASE("A body that an impact accelerates towards a distant wall stops there"
   const int struck = add_ball(w, 0.01, 0.01, {0, 0, 0}, 0, 1);
   const int striker = add_ball(w, 1, 0.01, {-0.0215, 0, 0}, 0, 1);
   body_of(w, striker).velocity_m_s = {15, 0, 0};
-  Solver s(w, by_impulse(0.001));
+  Solver s(w, impulses_at(0.001));
   for (int i = 0; i < 20; ++i) {
     s.step();
     CHECK(s.bodies()[static_cast<std::size_t>(struck)].centre_m.x() < 0.0245 + kAllowed_m);

@@ -5,6 +5,7 @@
 
 #include "sync/bus/identity.h"
 #include "tests/sim_node/support/small_worlds.h"
+#include "tests/sim_node/support/solver_steps.h"
 
 using namespace tactus::sim;
 using namespace tactus::sim::test;
@@ -12,18 +13,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-void run(Solver& solver, double seconds) {
-  for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) solver.step();
-}
-
 double total_force(const Solver& solver) {
   double sum = 0;
   for (const Manifold& m : solver.solved())
     for (const ManifoldPoint& p : m.used()) sum += p.normal_force_N;
   return sum;
 }
-
-const BodyMotion& body(const Solver& s, int i) { return s.bodies()[static_cast<std::size_t>(i)]; }
 
 }  // namespace
 

@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-ShapeDef shape(ShapeKind kind, const Vector3d& size) {
+ShapeDef solid_shape(ShapeKind kind, const Vector3d& size) {
   ShapeDef s;
   s.body = 0;
   s.kind = kind;
@@ -51,7 +51,7 @@ TEST_CASE("The plane of a primitive is at its nearest point, as in an exhaustive
   std::uniform_real_distribution<double> u(-1, 1);
   const Vector3d size(0.3, 0.2, 0.4);
   const ShapeKind kind = GENERATE(ShapeKind::kBox, ShapeKind::kSphere, ShapeKind::kCylinder, ShapeKind::kCapsule);
-  const ClosestSurface surface(shape(kind, size), nullptr);
+  const ClosestSurface surface(solid_shape(kind, size), nullptr);
   std::vector<SurfacePlane> planes;
   for (int i = 0; i < 2000; ++i) {
     const Vector3d p = 0.6 * Vector3d(u(random), u(random), u(random));
@@ -76,10 +76,10 @@ TEST_CASE("A box of triangles has the planes of a box at any resolution") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(-1, 1);
   const Vector3d size(0.1, 0.08, 0.06);
-  const ClosestSurface solid(shape(ShapeKind::kBox, size), nullptr);
+  const ClosestSurface solid(solid_shape(ShapeKind::kBox, size), nullptr);
   for (const int n : {1, 7}) {
     const TriangleMesh mesh = box_mesh(size, n);
-    const ClosestSurface soup(shape(ShapeKind::kMesh, size), std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
+    const ClosestSurface soup(solid_shape(ShapeKind::kMesh, size), std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
     std::vector<SurfacePlane> planes, exact;
     int compared = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -104,7 +104,7 @@ TEST_CASE("A box of triangles has the planes of a box at any resolution") {
 TEST_CASE("Just inside a mesh the nearest face gives the plane") {
   const Vector3d size(0.1, 0.08, 0.06);
   const TriangleMesh mesh = box_mesh(size, 5);
-  const ClosestSurface soup(shape(ShapeKind::kMesh, size), std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
+  const ClosestSurface soup(solid_shape(ShapeKind::kMesh, size), std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
   std::vector<SurfacePlane> planes;
   soup.query({0.012, 0.003, 0.029}, 0.01, planes);
   REQUIRE(planes.size() == 1);
@@ -125,7 +125,7 @@ TEST_CASE("A concave edge of a mesh has both of its planes") {
     square({0, -0.05, 0.01 * i}, {0, 0.1, 0}, {0, 0, 0.01});
   }
   mesh.normals.assign(mesh.vertices.size(), Vector3d::UnitZ());
-  const ClosestSurface corner(shape(ShapeKind::kMesh, {1, 1, 1}), std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
+  const ClosestSurface corner(solid_shape(ShapeKind::kMesh, {1, 1, 1}), std::make_shared<const TriangleTree>(mesh.vertices, mesh.indices));
   std::vector<SurfacePlane> planes;
   for (const double x : {0.002, 0.005, 0.013})
     for (const double z : {0.003, 0.008}) {

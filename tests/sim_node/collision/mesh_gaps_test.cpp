@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-ShapeDef shape(ShapeKind kind, const Vector3d& size, int mesh = -1) {
+ShapeDef shape_of(ShapeKind kind, const Vector3d& size, int mesh = -1) {
   ShapeDef s;
   s.kind = kind;
   s.size_m = size;
@@ -22,7 +22,7 @@ ShapeDef shape(ShapeKind kind, const Vector3d& size, int mesh = -1) {
 
 TriangleMesh mesh_of(const Soup& s) { return {s.vertices, {}, s.indices}; }
 
-const PointPair& least(const std::vector<PointPair>& found) {
+const PointPair& least_of(const std::vector<PointPair>& found) {
   return *std::min_element(found.begin(), found.end(),
                            [](const PointPair& x, const PointPair& y) { return x.gap_m < y.gap_m; });
 }
@@ -65,18 +65,18 @@ TEST_CASE("The gap of a body to a mesh is the least over all triangles") {
   Soup point, segment;
   point.add(Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero());
   segment.add({0, 0, -0.05}, {0, 0, 0.05}, {0, 0, 0.05});
-  const Case cases[] = {{shape(ShapeKind::kSphere, {0.03, 0, 0}), point, 0.03, 1e-9},
-                        {shape(ShapeKind::kCapsule, {0.02, 0, 0.1}), segment, 0.02, 1e-8},
-                        {shape(ShapeKind::kBox, {0.06, 0.04, 0.1}), box({0.06, 0.04, 0.1}), 0, 1e-8},
+  const Case cases[] = {{shape_of(ShapeKind::kSphere, {0.03, 0, 0}), point, 0.03, 1e-9},
+                        {shape_of(ShapeKind::kCapsule, {0.02, 0, 0.1}), segment, 0.02, 1e-8},
+                        {shape_of(ShapeKind::kBox, {0.06, 0.04, 0.1}), box({0.06, 0.04, 0.1}), 0, 1e-8},
                         // The sides of the prism lie inside the cylinder by r (1 - cos(pi / 48)).
-                        {shape(ShapeKind::kCylinder, {0.03, 0, 0.1}), prism(0.03, 0.1, 48), 0, 7e-5},
-                        {shape(ShapeKind::kMesh, {1, 1, 1}, 1), comb(2, 0.1), 0, 1e-8}};
+                        {shape_of(ShapeKind::kCylinder, {0.03, 0, 0.1}), prism(0.03, 0.1, 48), 0, 7e-5},
+                        {shape_of(ShapeKind::kMesh, {1, 1, 1}, 1), comb(2, 0.1), 0, 1e-8}};
   const Soup lumpy = lumpy_sphere(0, 0.1, 3);
   WorldDef world;
   world.meshes = {mesh_of(lumpy), mesh_of(comb(2, 0.1))};
   for (const Case& c : cases) {
     auto gaps = make_detector("gaps");
-    const int mesh = gaps->add(shape(ShapeKind::kMesh, {1, 1, 1}, 0), world), body = gaps->add(c.def, world);
+    const int mesh = gaps->add(shape_of(ShapeKind::kMesh, {1, 1, 1}, 0), world), body = gaps->add(c.def, world);
     Random random(11);
     int apart = 0;
     for (int i = 0; i < 60; ++i) {
@@ -94,10 +94,10 @@ TEST_CASE("The gap of a body to a mesh is the least over all triangles") {
       if (truth > reach + c.error_m) REQUIRE(found.empty());
       if (truth > reach - c.error_m || truth <= 1e-4) continue;
       REQUIRE(!found.empty());
-      CHECK(least(found).gap_m <= truth + 1e-8);
-      CHECK(least(found).gap_m >= truth - c.error_m);
-      CHECK(least(swapped).gap_m == Approx(least(found).gap_m).margin(1e-9));
-      CHECK((least(swapped).normal + least(found).normal).norm() < 1e-5);
+      CHECK(least_of(found).gap_m <= truth + 1e-8);
+      CHECK(least_of(found).gap_m >= truth - c.error_m);
+      CHECK(least_of(swapped).gap_m == Approx(least_of(found).gap_m).margin(1e-9));
+      CHECK((least_of(swapped).normal + least_of(found).normal).norm() < 1e-5);
       for (const PointPair& p : found) {
         CHECK((p.on_b_m - p.on_a_m - p.gap_m * p.normal).norm() < 1e-9);
         REQUIRE(p.triangle_a >= 0);
@@ -115,11 +115,11 @@ TEST_CASE("A body that slides over triangles does not catch on internal edges") 
   WorldDef world;
   world.meshes = {mesh_of(plain), mesh_of(box({0.1, 0.1, 0.1}))};
   auto gaps = make_detector("gaps");
-  const int floor = gaps->add(shape(ShapeKind::kMesh, {1, 1, 1}, 0), world);
+  const int floor = gaps->add(shape_of(ShapeKind::kMesh, {1, 1, 1}, 0), world);
   const ShapeDef def =
-      GENERATE(shape(ShapeKind::kBox, {0.1, 0.1, 0.1}), shape(ShapeKind::kCylinder, {0.05, 0, 0.1}),
-               shape(ShapeKind::kCapsule, {0.05, 0, 0.1}), shape(ShapeKind::kSphere, {0.05, 0, 0}),
-               shape(ShapeKind::kMesh, {1, 1, 1}, 1));
+      GENERATE(shape_of(ShapeKind::kBox, {0.1, 0.1, 0.1}), shape_of(ShapeKind::kCylinder, {0.05, 0, 0.1}),
+               shape_of(ShapeKind::kCapsule, {0.05, 0, 0.1}), shape_of(ShapeKind::kSphere, {0.05, 0, 0}),
+               shape_of(ShapeKind::kMesh, {1, 1, 1}, 1));
   const double height = GENERATE(1e-5, 1e-3, -2e-6);
   const int body = gaps->add(def, world);
   Random random(4);
@@ -135,7 +135,7 @@ TEST_CASE("A body that slides over triangles does not catch on internal edges") 
     REQUIRE(!found.empty());
     // Two intersecting meshes separate over the nearer face, which may be any face of a corner.
     const bool parted = height < 0 && def.kind == ShapeKind::kMesh;
-    if (!parted) CHECK(least(found).gap_m == Approx(height).margin(1e-9));
+    if (!parted) CHECK(least_of(found).gap_m == Approx(height).margin(1e-9));
     for (const PointPair& p : found)
       if (!parted) CHECK(p.normal.z() > 1 - 1e-6);
   }
@@ -151,10 +151,10 @@ TEST_CASE("A body in the corner of a mesh touches floor and wall") {
   world.meshes = {mesh_of(corner)};
   const double height = GENERATE(1e-5, -2e-6), aside = GENERATE(2e-5, -3e-6);
   const ShapeDef def =
-      GENERATE(shape(ShapeKind::kBox, {0.1, 0.1, 0.1}), shape(ShapeKind::kCylinder, {0.05, 0, 0.1}),
-               shape(ShapeKind::kSphere, {0.05, 0, 0}));
+      GENERATE(shape_of(ShapeKind::kBox, {0.1, 0.1, 0.1}), shape_of(ShapeKind::kCylinder, {0.05, 0, 0.1}),
+               shape_of(ShapeKind::kSphere, {0.05, 0, 0}));
   auto gaps = make_detector("gaps");
-  const int ground = gaps->add(shape(ShapeKind::kMesh, {1, 1, 1}, 0), world), body = gaps->add(def, world);
+  const int ground = gaps->add(shape_of(ShapeKind::kMesh, {1, 1, 1}, 0), world), body = gaps->add(def, world);
   std::vector<PointPair> found;
   gaps->query(ground, Isometry3d::Identity(), body,
               Isometry3d(Eigen::Translation3d(0.25 - aside, 0.013, 0.05 + height)), 0.001, found);
@@ -177,14 +177,14 @@ TEST_CASE("Intersecting meshes have a direction that separates them") {
   WorldDef world;
   world.meshes = {mesh_of(box({0.2, 0.2, 0.2})), mesh_of(lumpy_sphere(2, 0.1, 5))};
   auto gaps = make_detector("gaps");
-  const int block = gaps->add(shape(ShapeKind::kMesh, {1, 1, 1}, 0), world),
-            ball = gaps->add(shape(ShapeKind::kMesh, {1, 1, 1}, 1), world);
+  const int block = gaps->add(shape_of(ShapeKind::kMesh, {1, 1, 1}, 0), world),
+            ball = gaps->add(shape_of(ShapeKind::kMesh, {1, 1, 1}, 1), world);
   std::vector<PointPair> found;
   for (double height = 0.2; height > 0.18; height -= 0.002) {
     gaps->query(block, Isometry3d::Identity(), ball, Isometry3d(Eigen::Translation3d(0, 0, height)), 1e-3, found);
-    if (found.empty() || least(found).gap_m > 0) continue;
-    CHECK(least(found).normal.z() > 0.5);
-    CHECK(least(found).gap_m > -0.03);
+    if (found.empty() || least_of(found).gap_m > 0) continue;
+    CHECK(least_of(found).normal.z() > 0.5);
+    CHECK(least_of(found).gap_m > -0.03);
     return;
   }
   FAIL("the meshes never intersect");
@@ -195,11 +195,11 @@ TEST_CASE("A tilted body over triangles also has contacts at its far end") {
   WorldDef world;
   world.meshes = {mesh_of(plain), mesh_of(box({0.1, 0.1, 0.1}))};
   auto gaps = make_detector("gaps");
-  const int floor = gaps->add(shape(ShapeKind::kMesh, {1, 1, 1}, 0), world);
+  const int floor = gaps->add(shape_of(ShapeKind::kMesh, {1, 1, 1}, 0), world);
   const double tilt = 0.05, yaw = 0.3, height = 1e-3;
   const auto kind = GENERATE(ShapeKind::kBox, ShapeKind::kMesh, ShapeKind::kCapsule);
   const bool capsule = kind == ShapeKind::kCapsule;
-  const int body = gaps->add(shape(kind, capsule ? Vector3d(0.02, 0, 0.1) : Vector3d(0.1, 0.1, 0.1), 1), world);
+  const int body = gaps->add(shape_of(kind, capsule ? Vector3d(0.02, 0, 0.1) : Vector3d(0.1, 0.1, 0.1), 1), world);
   Isometry3d pose = Isometry3d::Identity();
   pose.rotate(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
   pose.rotate(Eigen::AngleAxisd(capsule ? M_PI / 2 - tilt : tilt, Vector3d::UnitY()));

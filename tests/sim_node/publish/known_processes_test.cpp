@@ -4,13 +4,15 @@
 #include <random>
 
 #include "sim_node/dual/followed_rate.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sim;
+using tactus::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kRun = 7;
+constexpr std::int64_t kRun = 7;
 
 node_health_t report(const std::string& node, std::int64_t incarnation, double realtime_factor = 0, std::int64_t run_id = kRun) {
   node_health_t m{};

@@ -3,13 +3,15 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::sim;
+using tactus::test::kMs;
 
 namespace {
 
 constexpr std::int64_t kStart = 7'000'000'000'000;
-constexpr std::int64_t kMs = 1'000'000;
 
 }  // namespace
 

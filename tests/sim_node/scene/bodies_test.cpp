@@ -6,7 +6,7 @@ using namespace tactus::sim;
 using Eigen::Vector3d;
 
 namespace {
-const std::string kBall = collision("<sphere><radius>0.1</radius></sphere>");
+const std::string kLinkBall = collision("<sphere><radius>0.1</radius></sphere>");
 bool same(const Vector3d& a, const Vector3d& b) { return (a - b).norm() < 1e-9; }
 }  // namespace
 
@@ -58,8 +58,8 @@ TEST_CASE("Friction and restitution come from SDF, then from the material, then 
 }
 
 TEST_CASE("The innermost surface setting applies, from collision over link to model") {
-  SceneFile file(model("<tactus:surface material='steel'/><link name='a'>" + kBall +
-                       "</link><link name='b'><tactus:surface material='oak'/>" + kBall +
+  SceneFile file(model("<tactus:surface material='steel'/><link name='a'>" + kLinkBall +
+                       "</link><link name='b'><tactus:surface material='oak'/>" + kLinkBall +
                        "<collision name='d'><tactus:surface material='glass'/><geometry><box><size>1 1 1</size></box>"
                        "</geometry></collision></link>"));
   const WorldDef w = file.load();
@@ -101,7 +101,7 @@ TEST_CASE("Gravity and velocity decay of a link are read") {
 
 TEST_CASE("An SDF 1.4 file with old spellings loads") {
   SceneFile file(world("<gravity>0 0 -3.7</gravity><model name='m'><pose>0 0 1 0 3.141592653589793 0</pose><link name='l'>" +
-                           kBall + "</link></model>",
+                           kLinkBall + "</link></model>",
                        "1.4"));
   const WorldDef w = file.load();
   CHECK(same(w.gravity_m_s2, {0, 0, -3.7}));

@@ -23,11 +23,11 @@ sync::Bytes ramp(std::uint8_t highest = 255) { return png_bytes(2, 2, 8, {0, 10,
 SceneFile scene(const std::string& materials, const sync::Bytes& picture = ramp()) {
   return SceneFile(world(materials), {{"planks.png", picture}});
 }
-std::string load_error(const std::string& attributes, const sync::Bytes& picture = ramp()) {
+std::string material_error(const std::string& attributes, const sync::Bytes& picture = ramp()) {
   SceneFile file = scene("<tactus:material name='p' base='oak' " + attributes + "/>", picture);
   return file.load_error();
 }
-const material_def_t& material(const WorldDef& w, const std::string& name) {
+const material_def_t& material_of(const WorldDef& w, const std::string& name) {
   for (const auto& m : w.materials)
     if (m.name == name) return m;
   FAIL("no material " + name);
@@ -38,15 +38,15 @@ const material_def_t& material(const WorldDef& w, const std::string& name) {
 TEST_CASE("A material refers to its height map by content hash, with size and height") {
   SceneFile file = scene("<tactus:material name='p' base='oak' " + kGood + "/><tactus:material name='q' base='p' density='900'/>");
   const WorldDef w = file.load();
-  const material_def_t& p = material(w, "p");
+  const material_def_t& p = material_of(w, "p");
   const sync::Bytes bytes = ramp();
   CHECK(p.bump_asset == sync::fnv1a_64(bytes.data(), bytes.size()));
   CHECK(p.bump_size_u_m == Approx(0.5));
   CHECK(p.bump_size_v_m == Approx(0.2));
   CHECK(p.bump_height_m == Approx(0.001));
-  CHECK(material(w, "oak").bump_asset == 0);
+  CHECK(material_of(w, "oak").bump_asset == 0);
   SECTION("a derived material inherits the height map") {
-    const material_def_t& q = material(w, "q");
+    const material_def_t& q = material_of(w, "q");
     CHECK(q.density_kg_m3 == 900);
     CHECK(q.bump_asset == p.bump_asset);
     CHECK(q.bump_size_u_m == p.bump_size_u_m);
@@ -82,9 +82,9 @@ TEST_CASE("An invalid height map is rejected with its line") {
   SceneFile absent(world("\n<tactus:material name='p' base='oak' " + kGood + "/>"));
   CHECK_THAT(absent.load_error(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("\"planks.png\", which is not found"));
   const auto expect_rejection = [](const std::string& attributes, const std::string& because) {
-    CHECK_THAT(load_error(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
+    CHECK_THAT(material_error(attributes), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
-  CHECK(load_error(kGood) == "");
+  CHECK(material_error(kGood) == "");
   SECTION("picture, size and height are required together") {
     expect_rejection("bump='planks.png' bump_height='1mm'", "lacks its attribute \"bump_size\"");
     expect_rejection("bump='planks.png' bump_size='1m 1m'", "lacks its attribute \"bump_height\"");
@@ -109,7 +109,7 @@ TEST_CASE("An invalid height map is rejected with its line") {
   }
   SECTION("a picture that is not a height map is rejected") {
     const auto unread = [](const sync::Bytes& picture, const std::string& because) {
-      CHECK_THAT(load_error(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
+      CHECK_THAT(material_error(kGood, picture), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("cannot be read: " + because));
     };
     unread({'h', 'e', 'l', 'l', 'o'}, "it is not a PNG file");
     unread(png_bytes(2, 2, 8, sync::Bytes(12), PNG_COLOR_TYPE_RGB), "it must be grey");

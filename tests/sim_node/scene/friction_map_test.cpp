@@ -13,11 +13,11 @@ using namespace tactus::sim;
 
 namespace {
 
-const std::string kGood = "friction_map='halves.png' friction_size='0.5m 20cm' friction_factors='0.2 1.5'";
+const std::string kGoodMap = "friction_map='halves.png' friction_size='0.5m 20cm' friction_factors='0.2 1.5'";
 
 sync::Bytes halves() { return test::png_bytes(2, 2, 8, {0, 255, 0, 255}); }
 
-SceneFile scene(const std::string& attributes, const sync::Bytes& picture = halves()) {
+SceneFile map_scene(const std::string& attributes, const sync::Bytes& picture = halves()) {
   return SceneFile(
       world("<tactus:material name='p' base='oak' " + attributes + "/><tactus:material name='q' base='p'/>"),
       {{"halves.png", picture}});
@@ -26,7 +26,7 @@ SceneFile scene(const std::string& attributes, const sync::Bytes& picture = halv
 }  // namespace
 
 TEST_CASE("A material refers to its friction map by content hash, with size and factors") {
-  SceneFile file = scene(kGood);
+  SceneFile file = map_scene(kGoodMap);
   const WorldDef w = file.load();
   const auto decoded = sync::decode_asset<scene_t>(make_assets(w)[0].bytes);
   REQUIRE(decoded);
@@ -53,10 +53,10 @@ TEST_CASE("A material refers to its friction map by content hash, with size and 
 TEST_CASE("An invalid friction map is rejected with its line") {
   const auto expect_rejection = [](const std::string& attributes, const std::string& because,
                           const sync::Bytes& picture = halves()) {
-    SceneFile file = scene(attributes, picture);
+    SceneFile file = map_scene(attributes, picture);
     CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains(because));
   };
-  SceneFile good = scene(kGood);
+  SceneFile good = map_scene(kGoodMap);
   CHECK(good.load_error() == "");
   expect_rejection("friction_map='halves.png' friction_factors='0 1'", "lacks its attribute \"friction_size\"");
   expect_rejection("friction_map='halves.png' friction_size='1m 1m'", "lacks its attribute \"friction_factors\"");
@@ -70,5 +70,5 @@ TEST_CASE("An invalid friction map is rejected with its line") {
   expect_rejection(with("1m 1m", "-0.1 1"), "between 0 and 20");
   expect_rejection(with("1m 1m", "0 21"), "between 0 and 20");
   expect_rejection(with("1m 1m", "0 nan"), "friction_factors");
-  expect_rejection(kGood, "names friction_map \"halves.png\", which cannot be read: it is not a PNG file", {'x'});
+  expect_rejection(kGoodMap, "names friction_map \"halves.png\", which cannot be read: it is not a PNG file", {'x'});
 }

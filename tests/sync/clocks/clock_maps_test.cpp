@@ -7,12 +7,13 @@
 #include <tactus/clock_map_t.hpp>
 
 #include "tests/sync/support/memory_sink.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kSecond;
 
 namespace {
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 clock_map_t line(std::int32_t of, std::int32_t to, std::int64_t at, std::int64_t offset, double drift, std::int64_t seq = 0,
                  std::int64_t incarnation = 1) {

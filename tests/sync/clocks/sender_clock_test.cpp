@@ -6,13 +6,15 @@
 #include <tactus/header_t.hpp>
 
 #include "tests/sync/support/memory_sink.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
+using tactus::test::kSecond;
 
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000, kMs = 1'000'000;
 constexpr std::int64_t kRun = 7, kAhead = 5'000 * kSecond;
 constexpr std::int32_t kOurs = 1, kTheirs = 2;
 

@@ -6,11 +6,13 @@
 #include <tactus/header_t.hpp>
 #include <tactus/sim_clock_t.hpp>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
-constexpr std::int64_t kMs = 1'000'000;
 
 header_t header(std::int64_t incarnation, std::int64_t publish_ns, std::int64_t run = 1) {
   header_t h{};

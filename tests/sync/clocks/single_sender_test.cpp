@@ -8,14 +8,15 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kRun = 7;
+constexpr std::int64_t kRunId = 7;
 
 // How the receiver of an output follows its sender.
 struct Output {
@@ -25,7 +26,7 @@ struct Output {
   bool pages;           // its messages overtake each other
 };
 const std::vector<Output> kOutputs{
-    {channels::kToolState, 1000, kRun, false},
+    {channels::kToolState, 1000, kRunId, false},
     {channels::kDeviceState, 1000, SingleSender::kAnyRun, false},
     {channels::kDeviceForce, 1000, SingleSender::kAnyRun, false},
     {channels::kThermalState, 50, SingleSender::kAnyRun, false},
@@ -37,7 +38,7 @@ const std::vector<Output> kOutputs{
 };
 
 struct Sender {
-  std::int64_t incarnation, run_id = kRun, seq = 0, clock_ns = 0;
+  std::int64_t incarnation, run_id = kRunId, seq = 0, clock_ns = 0;
   header_t next(std::int64_t arrival_ns) {
     header_t h{};
     h.incarnation = incarnation;
@@ -82,7 +83,7 @@ TEST_CASE("Each output follows its first sender, whose messages are used once ea
   CHECK(r.receive(a) == SenderStatus::kFirst);
   CHECK(r.receive(a) == SenderStatus::kCurrent);
   CHECK(r.followed.incarnation() == 1);
-  CHECK(r.followed.run_id() == kRun);
+  CHECK(r.followed.run_id() == kRunId);
   CHECK(r.run(a, 1'000 * kMs) == Approx(r.output.rate_Hz).margin(1));
   CHECK_FALSE(r.followed.conflict(r.now()));
   CHECK_FALSE(r.followed.silent(r.now()));
@@ -91,7 +92,7 @@ TEST_CASE("Each output follows its first sender, whose messages are used once ea
 TEST_CASE("A second sender of an output is a conflict and changes nothing for the first one") {
   Receiver r = each_output();
   INFO(r.output.channel);
-  Sender a{1}, b{2, kRun, 900'000, 40 * kMs};
+  Sender a{1}, b{2, kRunId, 900'000, 40 * kMs};
   r.run(a, 500 * kMs);
   const int used = r.run(a, 500 * kMs, {&b});
   CHECK(used == Approx(0.5 * r.output.rate_Hz).margin(1));  // all of the first one, none of the second one
@@ -106,7 +107,7 @@ TEST_CASE("A second sender of an output is a conflict and changes nothing for th
     std::mt19937_64 random(4);
     for (int i = 0; i < 20'000; ++i) {
       if (i % 20 == 0) CHECK(r.receive(a) == SenderStatus::kCurrent);
-      Sender other{static_cast<std::int64_t>(random() >> 2) + 3, kRun, static_cast<std::int64_t>(random() >> 1),
+      Sender other{static_cast<std::int64_t>(random() >> 2) + 3, kRunId, static_cast<std::int64_t>(random() >> 1),
                    static_cast<std::int64_t>(random() >> 4)};
       CHECK(r.receive(other) == SenderStatus::kConflict);
       r.now_ns += r.period_ns / 20;
@@ -150,7 +151,7 @@ TEST_CASE("A sender of an output that continues after a silence continues its su
 TEST_CASE("The same incarnation in another run is another sender of an output") {
   Receiver r = each_output();
   INFO(r.output.channel);
-  Sender live{1}, recorded{1, kRun + 1};
+  Sender live{1}, recorded{1, kRunId + 1};
   r.run(live, 100 * kMs);
   const SenderStatus expected = r.output.run_id == SingleSender::kAnyRun ? SenderStatus::kConflict : SenderStatus::kForeign;
   CHECK(r.receive(recorded) == expected);

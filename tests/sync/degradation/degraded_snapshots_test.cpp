@@ -17,16 +17,17 @@
 
 #include "sync/resampling/contact_stream.h"
 #include "sync/clocks/sender_clock.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kEpoch = 5'000'000'000'000;  // on the host's clock
 
-OperatorChain stack_of(const std::string& attributes) {
+OperatorChain audio_chain(const std::string& attributes) {
   return OperatorChain(parse_profile("<profile><degrade modality=\"audio\" " + attributes + "/></profile>", "p.xml"),
                "audio", {});
 }
@@ -98,7 +99,7 @@ TEST_CASE("Without a profile every message passes at once and unchanged") {
 }
 
 TEST_CASE("All pages of a snapshot are kept or dropped together") {
-  OperatorChain stack = stack_of("loss=\"50%\"");
+  OperatorChain stack = audio_chain("loss=\"50%\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
   for (int ms = 0; ms < 200; ++ms)
@@ -117,7 +118,7 @@ TEST_CASE("A profile change between the pages of a snapshot drops only its remai
   for (int ms = 0; ms < 10; ++ms)
     for (int page = 0; page < 3; ++page) {
       if (ms == 5 && page == 1) {
-        stack = stack_of("gain=\"0.5\"");
+        stack = audio_chain("gain=\"0.5\"");
         frames.change_profile();
       }
       frames.push(page_at(ms, page, 3, 3 * ms + page), arrival(ms), stack, nullptr);
@@ -144,7 +145,7 @@ TEST_CASE("A profile change between the pages of two streams of a channel drops 
     for (int page = 0; page < 3; ++page)
       for (const std::int8_t group : {contact_frame_t::OTHER, contact_frame_t::TOOL}) {
         if (ms == 5 && page == 1 && group == contact_frame_t::TOOL) {
-          stack = stack_of("gain=\"0.5\"");
+          stack = audio_chain("gain=\"0.5\"");
           frames.change_profile();
         }
         push(ms, page, group);
@@ -163,7 +164,7 @@ TEST_CASE("A profile change between the pages of two streams of a channel drops 
 
 TEST_CASE("While the world is paused, the first complete snapshot after a profile change is delivered") {
   const bool between_pages = GENERATE(true, false);
-  OperatorChain stack = stack_of("off=\"true\"");
+  OperatorChain stack = audio_chain("off=\"true\"");
   DegradedSnapshots<contact_frame_t> frames;
   for (int k = 0; k < 10; ++k)
     for (int page = 0; page < 3; ++page) {
@@ -180,7 +181,7 @@ TEST_CASE("While the world is paused, the first complete snapshot after a profil
 
 TEST_CASE("While the world is paused, tool states are delayed and dropped one by one") {
   const bool late = GENERATE(true, false);
-  OperatorChain stack = stack_of(late ? "delay=\"40ms network\"" : "loss=\"50%\"");
+  OperatorChain stack = audio_chain(late ? "delay=\"40ms network\"" : "loss=\"50%\"");
   DegradedSnapshots<tool_state_t> tools;
   int came = 0;
   for (int ms = 0; ms < 1000; ++ms) {
@@ -201,7 +202,7 @@ TEST_CASE("While the world is paused, tool states are delayed and dropped one by
 }
 
 TEST_CASE("A dropped event is not restored by its repetitions") {
-  OperatorChain stack = stack_of("loss=\"40%\"");
+  OperatorChain stack = audio_chain("loss=\"40%\"");
   EventInbox degraded(1);
   Decisions decisions;
   std::vector<contact_event_t> all;
@@ -222,7 +223,7 @@ TEST_CASE("A dropped event is not restored by its repetitions") {
 
 TEST_CASE("A long network delay delivers all events once, later by the delay, without a restart") {
   const int delay_ms = GENERATE(40, 500, 3000);
-  OperatorChain stack = stack_of("delay=\"" + std::to_string(delay_ms) + "ms network\"");
+  OperatorChain stack = audio_chain("delay=\"" + std::to_string(delay_ms) + "ms network\"");
   EventInbox degraded(1);
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<contact_event_t> all;
@@ -249,7 +250,7 @@ TEST_CASE("A long network delay delivers all events once, later by the delay, wi
 }
 
 TEST_CASE("A stream frozen to zero has no contacts") {
-  OperatorChain stack = stack_of("freeze=\"zero\" from=\"10ms\" until=\"20ms\"");
+  OperatorChain stack = audio_chain("freeze=\"zero\" from=\"10ms\" until=\"20ms\"");
   DegradedSnapshots<contact_frame_t> frames;
   for (int ms = 0; ms < 30; ++ms) frames.push(page_at(ms, 0, 1, ms), arrival(ms), stack, nullptr);
   int n = 0;
@@ -264,7 +265,7 @@ TEST_CASE("A stream frozen to zero has no contacts") {
 
 TEST_CASE("A modality that is off receives no poses") {
   for (const char* what : {"off=\"true\"", "freeze=\"zero\"", "loss=\"100%\" conceal=\"zero\""}) {
-    OperatorChain stack = stack_of(std::string(what) + " from=\"10ms\" until=\"20ms\"");
+    OperatorChain stack = audio_chain(std::string(what) + " from=\"10ms\" until=\"20ms\"");
     DegradedSnapshots<world_state_t> poses;
     for (int ms = 0; ms < 30; ++ms) {
       world_state_t m{};
@@ -284,7 +285,7 @@ TEST_CASE("A modality that is off receives no poses") {
 }
 
 TEST_CASE("A log that is played again delivers its events again") {
-  OperatorChain stack = stack_of("delay=\"10ms network\"");
+  OperatorChain stack = audio_chain("delay=\"10ms network\"");
   EventInbox degraded(1);
   int heard = 0;
   for (int round = 0; round < 2; ++round)
@@ -297,11 +298,11 @@ TEST_CASE("A log that is played again delivers its events again") {
 }
 
 TEST_CASE("Changed values are valid in every message") {
-  OperatorChain stack = stack_of("gain=\"-2\"");
+  OperatorChain stack = audio_chain("gain=\"-2\"");
   DegradedSnapshots<contact_frame_t> frames;
   frames.push(page_at(3, 0, 1, 0), arrival(3), stack, nullptr);
   CHECK(frames.pop(arrival(3))->first.contacts.at(0).normal_force_N == 0);
-  OperatorChain half = stack_of("gain=\"0.5 velocity\"");
+  OperatorChain half = audio_chain("gain=\"0.5 velocity\"");
   EventInbox events(1);
   events.push(events_at(3, {event(1, 2)}, 0), arrival(3), half, nullptr);
   events.release(arrival(3));
@@ -323,7 +324,7 @@ TEST_CASE("A delayed message does not change the estimated clock of its sender")
   maps.observe(map, host_time(kEpoch) + kBehind);
   REQUIRE(maps.read(host_time(kEpoch), kTheirs, kOurs));
   SenderClock clock({1, kOurs, &maps});
-  OperatorChain stack = stack_of(GENERATE("delay=\"40ms network\"", "delay=\"10ms network\" jitter=\"10ms uniform\"", "rate=\"60Hz\""));
+  OperatorChain stack = audio_chain(GENERATE("delay=\"40ms network\"", "delay=\"10ms network\" jitter=\"10ms uniform\"", "rate=\"60Hz\""));
   DegradedSnapshots<contact_frame_t> snapshots;
   EventInbox events({1, kOurs, &maps});
   std::size_t heard = 0;

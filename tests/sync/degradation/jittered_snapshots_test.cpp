@@ -17,13 +17,13 @@
 
 #include "sync/degradation/degraded_snapshots.h"
 #include "sync/resampling/event_inbox.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 OperatorChain chain_of(const std::string& attributes) {
   return OperatorChain(parse_profile("<profile><degrade modality=\"a\" " + attributes + "/></profile>", "p.xml"), "a", {});

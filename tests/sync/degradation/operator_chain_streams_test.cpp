@@ -9,15 +9,15 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/degradation/degraded_snapshots.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-
-OperatorChain stack_of(const std::string& attributes, SimTime start = {}) {
+OperatorChain thermal_chain(const std::string& attributes, SimTime start = {}) {
   return OperatorChain(parse_profile("<profile><degrade modality=\"thermal\" " + attributes + "/></profile>", "p.xml"),
                "thermal", start);
 }
@@ -66,7 +66,7 @@ std::map<int, std::vector<std::int64_t>> both_groups(OperatorChain& stack, doubl
 }  // namespace
 
 TEST_CASE("A rate thins each stream independently") {
-  OperatorChain stack = stack_of("rate=\"5Hz\"");
+  OperatorChain stack = thermal_chain("rate=\"5Hz\"");
   auto kept = both_groups(stack, [](int, std::int64_t) { return 1.0; });
   REQUIRE(kept[contact_frame_t::TOOL].size() == 10);
   for (std::size_t i = 0; i < 10; ++i) CHECK(kept[contact_frame_t::TOOL][i] == static_cast<std::int64_t>(200 * i));
@@ -74,14 +74,14 @@ TEST_CASE("A rate thins each stream independently") {
 }
 
 TEST_CASE("A deadband compares each stream only with itself") {
-  OperatorChain stack = stack_of("deadband=\"10% force\"");
+  OperatorChain stack = thermal_chain("deadband=\"10% force\"");
   auto kept = both_groups(stack, [](int group, std::int64_t ms) { return group == 0 && ms >= 1000 ? 2.0 : 1.0; });
   CHECK(kept[contact_frame_t::TOOL] == std::vector<std::int64_t>{0, 1000});
   CHECK(kept[contact_frame_t::OTHER].size() == 1);
 }
 
 TEST_CASE("A deadband on force passes every snapshot of poses, which have no forces") {
-  OperatorChain stack = stack_of("deadband=\"10% force\"");
+  OperatorChain stack = thermal_chain("deadband=\"10% force\"");
   DegradedSnapshots<world_state_t> poses;
   int passed = 0;
   for (std::int64_t ms = 0; ms < 160; ms += 16) {
@@ -96,7 +96,7 @@ TEST_CASE("A deadband on force passes every snapshot of poses, which have no for
 }
 
 TEST_CASE("A deadband compares all pages of a snapshot in any order and keeps or drops them together") {
-  OperatorChain stack = stack_of("deadband=\"10% force\"");
+  OperatorChain stack = thermal_chain("deadband=\"10% force\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
   std::map<std::int64_t, int> kept;
@@ -118,7 +118,7 @@ TEST_CASE("A deadband compares all pages of a snapshot in any order and keeps or
 }
 
 TEST_CASE("A deadband judges a snapshot with a lost page by its received pages after newer ones arrive") {
-  OperatorChain stack = stack_of("deadband=\"10% force\"");
+  OperatorChain stack = thermal_chain("deadband=\"10% force\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<std::int64_t> kept;
   for (std::int64_t ms = 0; ms < 10; ++ms) {
@@ -131,7 +131,7 @@ TEST_CASE("A deadband judges a snapshot with a lost page by its received pages a
 }
 
 TEST_CASE("The burst length of one stream does not depend on other streams") {
-  OperatorChain stack = stack_of("loss=\"20% burst=5\"");
+  OperatorChain stack = thermal_chain("loss=\"20% burst=5\"");
   DegradedSnapshots<contact_frame_t> frames;
   Decisions decisions;
   constexpr int kN = 40'000;
@@ -154,7 +154,7 @@ TEST_CASE("The burst length of one stream does not depend on other streams") {
 
 TEST_CASE("A rate continues at once when the world restarts") {
   const bool replayed = GENERATE(false, true);  // the same incarnation from its beginning, or a new one
-  OperatorChain stack = stack_of("rate=\"5Hz\"");
+  OperatorChain stack = thermal_chain("rate=\"5Hz\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::vector<std::int64_t> kept;
   for (std::int64_t ms = 0; ms < 20'000; ++ms)
@@ -171,7 +171,7 @@ TEST_CASE("A rate continues at once when the world restarts") {
 }
 
 TEST_CASE("A rate continues while the world is paused, by the time of publication") {
-  OperatorChain stack = stack_of("rate=\"50Hz\"");
+  OperatorChain stack = thermal_chain("rate=\"50Hz\"");
   DegradedSnapshots<touch_model_t> models;
   std::vector<std::int64_t> kept;
   // The world runs for a second, stands for five, runs for a second, is set back by half a second and runs on. The hand moves.
@@ -198,7 +198,7 @@ TEST_CASE("A rate continues while the world is paused, by the time of publicatio
 
 TEST_CASE("While the world is paused, each repetition of a snapshot is decided on as one of its own") {
   const std::string attributes = GENERATE("rate=\"5Hz\"", "loss=\"50%\"");
-  OperatorChain stack = stack_of(attributes);
+  OperatorChain stack = thermal_chain(attributes);
   DegradedSnapshots<contact_frame_t> frames;
   int passed = 0, broken = 0;
   constexpr int kRepetitions = 600;  // 60 a second
@@ -223,7 +223,7 @@ TEST_CASE("While the world is paused, each repetition of a snapshot is decided o
 }
 
 TEST_CASE("The low-pass of a value continues while the world is paused") {
-  OperatorChain stack = stack_of("lowpass=\"1Hz position\"");
+  OperatorChain stack = thermal_chain("lowpass=\"1Hz position\"");
   DegradedSnapshots<touch_model_t> models;
   double last_m = 0;
   for (std::int64_t ms = 0; ms <= 1000; ++ms) {
@@ -241,7 +241,7 @@ TEST_CASE("The low-pass of a value continues while the world is paused") {
 }
 
 TEST_CASE("The times and the low-pass of a rule restart with the world") {
-  OperatorChain stack = stack_of("off=\"true\" from=\"1s\" until=\"2s\"", sim_time(50'000 * kMs));
+  OperatorChain stack = thermal_chain("off=\"true\" from=\"1s\" until=\"2s\"", sim_time(50'000 * kMs));
   const auto dropped = [&](std::int64_t ms, std::int64_t incarnation) {
     return stack.decide(event(1, ms, incarnation)).dropped();
   };
@@ -252,7 +252,7 @@ TEST_CASE("The times and the low-pass of a rule restart with the world") {
   CHECK(dropped(1500, 2));
   CHECK_FALSE(dropped(2500, 2));
 
-  OperatorChain smooth = stack_of("lowpass=\"1Hz\"");
+  OperatorChain smooth = thermal_chain("lowpass=\"1Hz\"");
   const auto force = [&](double value, std::int64_t ms) {
     return smooth.degraded_value(Quantity::kForce, 7, 0, value, sim_time(ms * kMs), -1, -1, -1, -1);
   };
@@ -262,7 +262,7 @@ TEST_CASE("The times and the low-pass of a rule restart with the world") {
 }
 
 TEST_CASE("The longest possible delay holds a stream of 1 kHz without loss") {
-  OperatorChain stack = stack_of("delay=\"60s network\"");
+  OperatorChain stack = thermal_chain("delay=\"60s network\"");
   DegradedSnapshots<contact_frame_t> frames;
   std::int64_t next = 0;
   bool in_turn = true;

@@ -13,16 +13,14 @@
 #include "sync/random/keyed_random.h"
 #include "sync/degradation/degraded_snapshots.h"
 #include "sync/bus/identity.h"
+#include "tests/sync/degradation/share_check.h"
 
 using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
 
-constexpr int kN = 20'000;
-constexpr double kSigmas = 4.5;
-
-OperatorChain stack_of(const std::string& attributes, int seed = 1) {
+OperatorChain seeded_chain(const std::string& attributes, int seed = 1) {
   return OperatorChain(parse_profile("<profile seed=\"" + std::to_string(seed) + "\"><degrade modality=\"a\" " +
                                  attributes + "/></profile>",
                              "p"),
@@ -41,7 +39,7 @@ StreamItem item(int i, bool is_event) {
 }
 
 std::vector<Decision> verdicts(const std::string& attributes, bool is_event, int seed = 1, int n = kN) {
-  OperatorChain stack = stack_of(attributes, seed);
+  OperatorChain stack = seeded_chain(attributes, seed);
   std::vector<Decision> out;
   for (int i = 0; i < n; ++i) out.push_back(stack.decide(item(i, is_event)));
   return out;
@@ -52,10 +50,6 @@ std::vector<double> held_s(const std::vector<Decision>& all, bool is_event) {
   for (int i = 0; i < static_cast<int>(all.size()); ++i)
     out.push_back(to_seconds(all[static_cast<std::size_t>(i)].release - item(i, is_event).arrival));
   return out;
-}
-
-void check_share(double count, double p, double n = kN) {
-  CHECK(std::abs(count - p * n) <= kSigmas * std::sqrt(p * (1 - p) * n));
 }
 
 std::uint64_t fingerprint(const std::vector<Decision>& all) {
@@ -171,7 +165,7 @@ TEST_CASE("Repeated messages do not change any decision") {
       "loss=\"20% burst=3\" delay=\"9ms network\" jitter=\"3ms normal correlation=0.5 order=free\" "
       "duplicate=\"10%\"";
   const auto decided = [&](int repetitions) {
-    OperatorChain stack = stack_of(everything, 5);
+    OperatorChain stack = seeded_chain(everything, 5);
     EventInbox events(1);
     Decisions decisions;
     for (int ms = 0; ms < 4000; ++ms) {
@@ -199,7 +193,7 @@ TEST_CASE("Repeated messages do not change any decision") {
 
 TEST_CASE("A contact frozen with hold becomes stale, a contact frozen to zero ends at once") {
   const bool zero = GENERATE(true, false);
-  OperatorChain stack = stack_of(std::string("freeze=\"") + (zero ? "zero" : "hold") + "\" from=\"100ms\"");
+  OperatorChain stack = seeded_chain(std::string("freeze=\"") + (zero ? "zero" : "hold") + "\" from=\"100ms\"");
   DegradedSnapshots<contact_frame_t> frames;
   ContactStream stream(1);
   for (int ms = 0; ms < 200; ++ms) {

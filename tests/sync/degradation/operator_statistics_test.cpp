@@ -13,14 +13,12 @@
 #include "sync/degradation/degraded_snapshots.h"
 #include "sync/degradation/measured_effect.h"
 #include "sync/resampling/event_inbox.h"
+#include "tests/sync/degradation/share_check.h"
 
 using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
-
-constexpr int kN = 20'000;
-constexpr double kSigmas = 4.5;
 
 Profile profile_of(const std::string& attributes) {
   return parse_profile("<profile seed=\"11\"><degrade modality=\"a\" " + attributes + "/></profile>", "p.xml");
@@ -48,7 +46,7 @@ struct Measured {
   std::vector<std::int64_t> released_ns;  // simulated times of the snapshots, in the order of their release
 };
 
-header_t header_at(std::int64_t t_ns, std::int64_t seq) {
+header_t stamped_header(std::int64_t t_ns, std::int64_t seq) {
   header_t h{};
   h.run_id = h.incarnation = 1;
   h.sim_time_ns = h.publish_time_ns = t_ns;
@@ -74,12 +72,12 @@ Measured measured(const std::string& attributes, double rate_Hz) {
     const std::int64_t t_ns = i * period_ns;
     tick_until(t_ns - 1);
     contact_frame_t frame{};
-    frame.header = header_at(t_ns, i);
+    frame.header = stamped_header(t_ns, i);
     frame.clock = {t_ns, t_ns, 1};
     frame.pages = 1;
     frames.push(frame, host_time(t_ns), chain, &decisions);
     contact_events_t events{};
-    events.header = header_at(t_ns, i);
+    events.header = stamped_header(t_ns, i);
     events.clock = frame.clock;
     events.pages = events.count = 1;
     events.events.resize(1);
@@ -99,10 +97,6 @@ Measured measured(const std::string& attributes, double rate_Hz) {
   tick_until(kN * period_ns + 2'000'000'000);
   out.effect.set_wire(chain.wire_messages(), chain.wire_lost());
   return out;
-}
-
-void check_share(double count, double p, double n = kN) {
-  CHECK(std::abs(count - p * n) <= kSigmas * std::sqrt(p * (1 - p) * n));
 }
 
 std::string text_of(double x) {

@@ -12,7 +12,7 @@ Rule rule_of(const std::string& attributes, const std::string& modality = "audio
       .rules.at(0);
 }
 
-std::string refusal(const std::string& xml) {
+std::string parse_refusal(const std::string& xml) {
   try {
     parse_profile(xml, "p.xml");
   } catch (const std::invalid_argument& e) {
@@ -21,8 +21,8 @@ std::string refusal(const std::string& xml) {
   return "";
 }
 
-std::string refusal_of(const std::string& attributes) {
-  return refusal("<profile>\n<degrade modality=\"audio\" " + attributes + "/></profile>");
+std::string rule_refusal(const std::string& attributes) {
+  return parse_refusal("<profile>\n<degrade modality=\"audio\" " + attributes + "/></profile>");
 }
 
 }  // namespace
@@ -80,29 +80,29 @@ TEST_CASE("Every operator is parsed") {
 }
 
 TEST_CASE("An invalid profile is rejected as a whole, with line and reason") {
-  CHECK_THAT(refusal("no xml"), Catch::StartsWith("p.xml:"));
-  CHECK_THAT(refusal("<profile>\n\n<degrade modality=\"audio\""), Catch::StartsWith("p.xml:"));
-  CHECK_THAT(refusal("<sdf/>"), Catch::Contains("begins with <profile>"));
-  CHECK_THAT(refusal("<profile colour=\"red\"/>"), Catch::Contains("no \"colour\""));
-  CHECK_THAT(refusal("<profile seed=\"x\"/>"), Catch::Contains("not a whole number"));
-  CHECK_THAT(refusal("<profile>\n<delay/></profile>"), Catch::StartsWith("p.xml:2: <delay> is not known"));
-  CHECK_THAT(refusal("<profile>\n<degrade delay=\"1ms\"/></profile>"), Catch::Contains("needs a modality"));
-  CHECK_THAT(refusal_of(""), Catch::Contains("does nothing"));
-  CHECK_THAT(refusal_of("from=\"1s\""), Catch::Contains("does nothing"));
-  CHECK_THAT(refusal_of("delay=\"40mss\""),
+  CHECK_THAT(parse_refusal("no xml"), Catch::StartsWith("p.xml:"));
+  CHECK_THAT(parse_refusal("<profile>\n\n<degrade modality=\"audio\""), Catch::StartsWith("p.xml:"));
+  CHECK_THAT(parse_refusal("<sdf/>"), Catch::Contains("begins with <profile>"));
+  CHECK_THAT(parse_refusal("<profile colour=\"red\"/>"), Catch::Contains("no \"colour\""));
+  CHECK_THAT(parse_refusal("<profile seed=\"x\"/>"), Catch::Contains("not a whole number"));
+  CHECK_THAT(parse_refusal("<profile>\n<delay/></profile>"), Catch::StartsWith("p.xml:2: <delay> is not known"));
+  CHECK_THAT(parse_refusal("<profile>\n<degrade delay=\"1ms\"/></profile>"), Catch::Contains("needs a modality"));
+  CHECK_THAT(rule_refusal(""), Catch::Contains("does nothing"));
+  CHECK_THAT(rule_refusal("from=\"1s\""), Catch::Contains("does nothing"));
+  CHECK_THAT(rule_refusal("delay=\"40mss\""),
              Catch::StartsWith("p.xml:2: delay=\"40mss\": \"mss\" is not a unit of s"));
-  CHECK_THAT(refusal_of("delay=\"-1ms\""), Catch::Contains("between 0 and 60"));
-  CHECK_THAT(refusal_of("delay=\"40ms sideways\""), Catch::Contains("\"sideways\" is not valid here"));
-  CHECK_THAT(refusal_of("delay=\"40ms burst=3\""), Catch::Contains("\"burst=\" is not valid here"));
-  CHECK_THAT(refusal_of("delay=\"\""), Catch::Contains("needs a value"));
-  CHECK_THAT(refusal_of("delai=\"1ms\""), Catch::Contains("no operator \"delai\""));
-  CHECK_THAT(refusal_of("loss=\"90% burst=2\""), Catch::Contains("impossible"));
-  CHECK_THAT(refusal_of("loss=\"nan\""), Catch::Contains("not a number"));
-  CHECK_THAT(refusal_of("freeze=\"maybe\""), Catch::Contains("choose hold or zero"));
-  CHECK_THAT(refusal_of("delay=\"1ms\" from=\"5s\" until=\"5s\""), Catch::Contains("until must be after from"));
-  CHECK_THAT(refusal_of("off=\"true\" bodies=\"ball\""), Catch::Contains("name two bodies"));
-  CHECK_THAT(refusal_of("dropout=\"2s every=1s\""), Catch::Contains("shorter than the time"));
-  CHECK_THAT(refusal("<profile><degrade modality=\"a\" off=\"true\"><x/></degrade></profile>"),
+  CHECK_THAT(rule_refusal("delay=\"-1ms\""), Catch::Contains("between 0 and 60"));
+  CHECK_THAT(rule_refusal("delay=\"40ms sideways\""), Catch::Contains("\"sideways\" is not valid here"));
+  CHECK_THAT(rule_refusal("delay=\"40ms burst=3\""), Catch::Contains("\"burst=\" is not valid here"));
+  CHECK_THAT(rule_refusal("delay=\"\""), Catch::Contains("needs a value"));
+  CHECK_THAT(rule_refusal("delai=\"1ms\""), Catch::Contains("no operator \"delai\""));
+  CHECK_THAT(rule_refusal("loss=\"90% burst=2\""), Catch::Contains("impossible"));
+  CHECK_THAT(rule_refusal("loss=\"nan\""), Catch::Contains("not a number"));
+  CHECK_THAT(rule_refusal("freeze=\"maybe\""), Catch::Contains("choose hold or zero"));
+  CHECK_THAT(rule_refusal("delay=\"1ms\" from=\"5s\" until=\"5s\""), Catch::Contains("until must be after from"));
+  CHECK_THAT(rule_refusal("off=\"true\" bodies=\"ball\""), Catch::Contains("name two bodies"));
+  CHECK_THAT(rule_refusal("dropout=\"2s every=1s\""), Catch::Contains("shorter than the time"));
+  CHECK_THAT(parse_refusal("<profile><degrade modality=\"a\" off=\"true\"><x/></degrade></profile>"),
              Catch::Contains("only attributes"));
 }
 

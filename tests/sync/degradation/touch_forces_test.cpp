@@ -9,13 +9,13 @@
 #include <tactus/touch_plane_t.hpp>
 
 #include "sync/degradation/degraded_snapshots.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 // One contact that has received this impulse, along z.
 touch_model_t model_at(std::int64_t ms, double impulse_N_s) {
@@ -33,13 +33,13 @@ touch_model_t model_at(std::int64_t ms, double impulse_N_s) {
   return m;
 }
 
-OperatorChain chain_of(const std::string& attributes) {
+OperatorChain haptic_chain(const std::string& attributes) {
   return OperatorChain(parse_profile("<profile><degrade modality=\"haptic\" " + attributes + "/></profile>", "p.xml"), "haptic", {});
 }
 
 // Updates in each second of a force that varies around 2 N, ten times a second.
 std::vector<int> updates_per_second(int seconds) {
-  OperatorChain chain = chain_of("deadband=\"10% force floor=10mN\"");
+  OperatorChain chain = haptic_chain("deadband=\"10% force floor=10mN\"");
   DegradedSnapshots<touch_model_t> models;
   std::vector<int> updates(static_cast<std::size_t>(seconds));
   double impulse_N_s = 0;
@@ -63,7 +63,7 @@ TEST_CASE("A deadband on the force of touch sends a constant pattern at a consta
 }
 
 TEST_CASE("A deadband on the force of touch passes no update of a constant force") {
-  OperatorChain chain = chain_of("deadband=\"10% force\"");
+  OperatorChain chain = haptic_chain("deadband=\"10% force\"");
   DegradedSnapshots<touch_model_t> models;
   int passed = 0;
   for (int ms = 0; ms < 5000; ++ms) {
@@ -74,7 +74,7 @@ TEST_CASE("A deadband on the force of touch passes no update of a constant force
 }
 
 TEST_CASE("A surface that comes near is sent under a deadband on the force of touch") {
-  OperatorChain chain = chain_of("deadband=\"10% force\"");
+  OperatorChain chain = haptic_chain("deadband=\"10% force\"");
   DegradedSnapshots<touch_model_t> models;
   std::vector<std::int64_t> passed;
   for (int ms = 0; ms < 100; ++ms) {

@@ -12,13 +12,13 @@
 #include <tactus/playout_t.hpp>
 
 #include "sync/bus/decode.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMillisecond;
 
 namespace {
-
-constexpr Nanoseconds kMs{1'000'000};
 
 NodeOptions in_memory() {
   NodeOptions o;
@@ -46,8 +46,8 @@ TEST_CASE("Messages that arrive while a tick reads its inputs are processed in t
   const HostTime turn = host_now();
   // Sent before the tick, and during the reads: sync/bus/bus.cpp stamps a message with its time of arrival when it reads it late.
   for (const std::int64_t ms : {-1, 3, 7}) {
-    const auto bytes = encode(frame(sender, 10 + ms, turn + ms * kMs));
-    node.bus().on_message(channels::kContacts, bytes, turn + ms * kMs + kMs / 10);
+    const auto bytes = encode(frame(sender, 10 + ms, turn + ms * kMillisecond));
+    node.bus().on_message(channels::kContacts, bytes, turn + ms * kMillisecond + kMillisecond / 10);
   }
   sense.step(turn);
   int heard = 0;
@@ -63,7 +63,7 @@ TEST_CASE("A second simulation changes nothing for a modality, does not keep its
   Identity first = Identity::fresh("sim_node", 1), second = Identity::fresh("sim_node", 1);
   HostTime now = host_now(), last_of_first{};
   int received = 0, of_second = 0;
-  for (std::int64_t ms = 0; ms < 400; ++ms, now += kMs) {
+  for (std::int64_t ms = 0; ms < 400; ++ms, now += kMillisecond) {
     // The first one stops after 200 ms, the second one begins after 100 ms.
     for (Identity* sender : {&first, &second}) {
       if (sender == &first ? ms >= 200 : ms < 100) continue;
@@ -160,7 +160,7 @@ TEST_CASE("A jitter of presentation has the asked mean and deviation under every
   int n = 0;
   for (int i = 0; i < kN; ++i) {
     // An event that happened 2 ms before its arrival.
-    const HostTime arrival = begin + 20 * i * kMs;
+    const HostTime arrival = begin + 20 * i * kMillisecond;
     contact_events_t m{};
     m.header = frame(sender, 100 + 20 * i, arrival).header;
     m.clock = {m.header.sim_time_ns, to_ns(arrival), 1};
@@ -177,7 +177,7 @@ TEST_CASE("A jitter of presentation has the asked mean and deviation under every
     REQUIRE(map);
     for (const contact_event_t& e : inbox.take(SimTime::max())) {
       const HostTime scheduled = sense.schedule(e.event_id, map->to_host(sim_time(e.time_ns)));
-      const double late_ms = 1e3 * to_seconds(scheduled - (arrival - (asap ? 0 : 2) * kMs));
+      const double late_ms = 1e3 * to_seconds(scheduled - (arrival - (asap ? 0 : 2) * kMillisecond));
       sum_ms += late_ms, square += late_ms * late_ms, ++n;
     }
     sense.publish(arrival);

@@ -7,8 +7,11 @@
 #include <tactus/tag_list_t.hpp>
 #include <tactus/tag_values_t.hpp>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::at_ms;
 
 namespace {
 
@@ -18,7 +21,6 @@ map_def_t map(const std::string& from, const std::string& to, double gain = 1, d
   m.tag = from, m.setting = to, m.gain = gain, m.offset = offset, m.low = low, m.high = high;
   return m;
 }
-HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
 
 // The tags "force" and "speed" of a process.
 tag_list_t list(const std::string& node) {

@@ -6,8 +6,11 @@
 #include <regex>
 #include <tactus/tag_request_t.hpp>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::at_ms;
 
 namespace {
 
@@ -17,7 +20,6 @@ tag_request_t request(std::int64_t incarnation, std::vector<std::string> pattern
   m.patterns = std::move(patterns), m.pattern_count = static_cast<std::int32_t>(m.patterns.size());
   return m;
 }
-HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
 
 }  // namespace
 

@@ -13,9 +13,11 @@
 #include "lcmtypes/channels.h"
 #include "lcmtypes/valid.h"
 #include "sync/node/tag_table.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::at_ms;
 
 namespace {
 
@@ -25,7 +27,6 @@ tag_request_t request(std::vector<std::string> patterns) {
   m.patterns = std::move(patterns), m.pattern_count = static_cast<std::int32_t>(m.patterns.size());
   return m;
 }
-HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
 
 struct Value {
   std::int64_t time_ns;

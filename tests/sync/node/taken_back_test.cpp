@@ -7,13 +7,13 @@
 #include <tactus/world_state_t.hpp>
 
 #include "sync/resampling/body_history.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 struct PublishedPage {
   std::int64_t now_ms = 0, time_ms = 0, seq = 0;

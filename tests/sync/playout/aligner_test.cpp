@@ -6,11 +6,12 @@
 #include <random>
 #include <vector>
 
+#include "tests/times.h"
+
 using namespace tactus::sync;
+using tactus::test::kMillisecond;
 
 namespace {
-
-constexpr Nanoseconds kMs{1'000'000};
 
 // Delays of 20 ms with an exponential tail of 5 ms: a network with queues.
 std::vector<Nanoseconds> tailed(int n, unsigned seed = 1) {
@@ -34,19 +35,19 @@ double late_share(Aligner& aligner, const std::vector<Nanoseconds>& trace, int l
 }  // namespace
 
 TEST_CASE("The quantile aligner estimates a constant latency exactly") {
-  const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
-  for (int i = 0; i < 500; ++i) aligner->add(30 * kMs);
-  CHECK(aligner->delay() == 30 * kMs);
+  const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMillisecond);
+  for (int i = 0; i < 500; ++i) aligner->add(30 * kMillisecond);
+  CHECK(aligner->delay() == 30 * kMillisecond);
 }
 
 TEST_CASE("The fixed aligner returns its delay regardless of the measured need") {
-  const auto aligner = make_aligner(AlignerKind::kFixed, 40 * kMs);
-  aligner->add(90 * kMs);
-  CHECK(aligner->delay() == 40 * kMs);
+  const auto aligner = make_aligner(AlignerKind::kFixed, 40 * kMillisecond);
+  aligner->add(90 * kMillisecond);
+  CHECK(aligner->delay() == 40 * kMillisecond);
 }
 
 TEST_CASE("The quantile aligner is late for 5 % of the events") {
-  const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
+  const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMillisecond);
   // 20,000 events, but the quantile of 128 is itself uncertain: its rank has the mean 0.95 (order statistics: 122/129).
   const double late = late_share(*aligner, tailed(20'000));
   CHECK(late > 0.040);
@@ -54,10 +55,10 @@ TEST_CASE("The quantile aligner is late for 5 % of the events") {
 }
 
 TEST_CASE("One very late event does not change the quantile") {
-  const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMs);
-  for (int i = 0; i < 100; ++i) aligner->add(20 * kMs);
-  aligner->add(500 * kMs);
-  CHECK(aligner->delay() == 20 * kMs);
+  const auto aligner = make_aligner(AlignerKind::kQuantile, 0 * kMillisecond);
+  for (int i = 0; i < 100; ++i) aligner->add(20 * kMillisecond);
+  aligner->add(500 * kMillisecond);
+  CHECK(aligner->delay() == 20 * kMillisecond);
 }
 
 TEST_CASE("An aligner is selected by its name, and an unknown name is rejected") {

@@ -11,14 +11,15 @@
 #include "lcmtypes/channels.h"
 #include "sync/playout/exchange.h"
 #include "sync/playout/lockstep.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMillisecond;
 
 namespace {
 
-constexpr Nanoseconds kMs{1'000'000};
-HostTime at(int ms) { return host_time(9'000'000'000) + ms * kMs; }
+HostTime at(int ms) { return host_time(9'000'000'000) + ms * kMillisecond; }
 
 PlayoutPlan plan(Policy policy = Policy::kLocalHapticFirst) {
   PlayoutPlan p;
@@ -29,12 +30,12 @@ PlayoutPlan plan(Policy policy = Policy::kLocalHapticFirst) {
 std::map<std::string, std::int64_t> delays_ms(const std::optional<playout_t>& m) {
   std::map<std::string, std::int64_t> out;
   if (m)
-    for (const playout_entry_t& e : m->entries) out[e.modality] = e.delay_ns / kMs.count();
+    for (const playout_entry_t& e : m->entries) out[e.modality] = e.delay_ns / kMillisecond.count();
   return out;
 }
 
 void heard(PlayoutCoordinator& c, const std::string& sense, int ms, int events = 40) {
-  for (int i = 0; i < events; ++i) c.latency_demand().add(sense, ms * kMs);
+  for (int i = 0; i < events; ++i) c.latency_demand().add(sense, ms * kMillisecond);
 }
 
 using Delays = std::map<std::string, std::int64_t>;
@@ -67,7 +68,7 @@ TEST_CASE("A stalled, slow or dead modality does not change the delays of the ot
   heard(c, "audio", 18), heard(c, "thermal", 25), heard(c, "visual", 33);
   const auto before = delays_ms(c.next_message(at(0)));
   SECTION("all waiting events are presented at once after a stall of 2 s") {
-    for (int i = 0; i < 12; ++i) c.latency_demand().add("visual", (2000 - 80 * i) * kMs);
+    for (int i = 0; i < 12; ++i) c.latency_demand().add("visual", (2000 - 80 * i) * kMillisecond);
     heard(c, "visual", 33, 8);
     CHECK(delays_ms(c.next_message(at(200))) == before);
   }
@@ -98,7 +99,7 @@ TEST_CASE("A delay rises at once and falls only by more than the slack") {
 TEST_CASE("A newer request is applied, an older one is rejected") {
   PlayoutCoordinator c(5, plan());
   PlayoutPlan requested = plan(Policy::kExperiment);
-  requested.soa["visual"] = -50 * kMs;
+  requested.soa["visual"] = -50 * kMillisecond;
   CHECK(c.push(request_for(requested, 100)));
   heard(c, "audio", 18), heard(c, "visual", 33);
   const auto m = c.next_message(at(0));
@@ -107,7 +108,7 @@ TEST_CASE("A newer request is applied, an older one is rejected") {
   CHECK(delays_ms(m) == Delays{{"audio", 150}, {"visual", 100}});
   CHECK_FALSE(c.push(request_for(plan(Policy::kAsap), 99)));
   CHECK(c.plan().policy == Policy::kExperiment);
-  requested.soa["visual"] = -500 * kMs;  // before the event
+  requested.soa["visual"] = -500 * kMillisecond;  // before the event
   CHECK_FALSE(c.push(request_for(requested, 200)));
 }
 
@@ -155,10 +156,10 @@ TEST_CASE("Lock-step times are aligned to simulated time for any host clock") {
   for (int ms = -500; ms < 500; ms += 7) {
     const HostTime t = at(ms);
     CHECK(loop.begin_of_iteration(t) <= t);
-    CHECK(t - loop.begin_of_iteration(t) < 80 * kMs);
+    CHECK(t - loop.begin_of_iteration(t) < 80 * kMillisecond);
     CHECK(loop.next_iteration(t) >= t);
-    CHECK(loop.next_iteration(t) - t < 80 * kMs);
-    CHECK(map.to_sim(loop.next_iteration(t)).time_since_epoch() % (80 * kMs) == Nanoseconds(0));
+    CHECK(loop.next_iteration(t) - t < 80 * kMillisecond);
+    CHECK(map.to_sim(loop.next_iteration(t)).time_since_epoch() % (80 * kMillisecond) == Nanoseconds(0));
   }
 }
 
@@ -167,7 +168,7 @@ TEST_CASE("Playout pages for any number of modalities fit the bus and hold all d
   const int senses = GENERATE(0, 1, 5, 64);
   playout_request_t request{};
   PlayoutPlan wanted = plan(Policy::kExperiment);
-  wanted.soa["z07"] = 20 * kMs;
+  wanted.soa["z07"] = 20 * kMillisecond;
   write_plan(request, 1, wanted);
   request.entries = request_for(wanted, 1).entries;
   request.count = 1;
@@ -195,7 +196,7 @@ TEST_CASE("Playout pages are merged in any order, ignoring repetitions and older
   for (int i = 0; i < 64; ++i) {
     playout_entry_t e{};
     e.modality = std::to_string(i) + std::string(60, 'z');
-    e.delay_ns = i * kMs.count();
+    e.delay_ns = i * kMillisecond.count();
     whole.entries.push_back(e);
   }
   whole.count = 64;
@@ -213,7 +214,7 @@ TEST_CASE("Playout pages are merged in any order, ignoring repetitions and older
   CHECK(heard.generation == 7);
   CHECK(heard.count == 64);
   CHECK(delays_ms(heard) == delays_ms(whole));
-  pages.front().entries.front().delay_ns = 500 * kMs.count();
+  pages.front().entries.front().delay_ns = 500 * kMillisecond.count();
   add_page(heard, pages.front());
   CHECK(delays_ms(heard).at(pages.front().entries.front().modality) == 500);
 }

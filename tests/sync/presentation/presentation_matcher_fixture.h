@@ -14,6 +14,9 @@
 
 namespace tactus::sync {
 
+inline constexpr int kHit = node_health_t::EXPECTS_HIT;
+inline constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
+
 struct MatcherFixture {
   static constexpr std::int64_t kRun = 7;
   static constexpr std::int64_t kBase = 1'000'000'000'000;

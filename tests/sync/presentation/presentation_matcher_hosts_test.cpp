@@ -14,8 +14,6 @@ using namespace tactus::sync;
 
 namespace {
 
-constexpr int kHit = node_health_t::EXPECTS_HIT;
-
 // audio_node runs on a host whose clock (2) is an hour ahead of the matcher's (1).
 struct TwoHosts {
   static constexpr std::int64_t kAhead = 3'600'000'000'000;

@@ -13,8 +13,6 @@ using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
-constexpr int kHit = node_health_t::EXPECTS_HIT;
-constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
 
 struct Node {
   std::string name, modality;

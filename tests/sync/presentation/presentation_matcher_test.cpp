@@ -14,11 +14,6 @@
 using namespace tactus;
 using namespace tactus::sync;
 
-namespace {
-constexpr int kHit = node_health_t::EXPECTS_HIT;
-constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
-}  // namespace
-
 TEST_CASE("A reported event has the outcome of its report") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 5000);

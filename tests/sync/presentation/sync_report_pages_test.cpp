@@ -13,8 +13,6 @@ using namespace tactus::sync;
 
 namespace {
 
-constexpr int kHit = node_health_t::EXPECTS_HIT;
-
 // `senses` modalities, each of which has presented one event.
 void fill(MatcherFixture& f, int senses, std::size_t name_length = 12) {
   for (int i = 0; i < senses; ++i) {

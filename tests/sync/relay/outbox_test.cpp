@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr HostTime kBegin{std::chrono::hours(1)};
+constexpr HostTime kOpened{std::chrono::hours(1)};
 
 std::vector<std::uint8_t> datagram(std::uint8_t first, std::size_t size = 1000) {
   std::vector<std::uint8_t> bytes(size, 0);
@@ -32,8 +32,8 @@ std::vector<int> flushed(Outbox& outbox, HostTime from, Nanoseconds length) {
 
 TEST_CASE("An outbox without a rate limit sends at once and in order") {
   Outbox outbox(0);
-  for (std::uint8_t i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(i), kBegin);
-  const auto sent = flushed(outbox, kBegin, 1ns);
+  for (std::uint8_t i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(i), kOpened);
+  const auto sent = flushed(outbox, kOpened, 1ns);
   REQUIRE(sent.size() == 100);
   CHECK(std::is_sorted(sent.begin(), sent.end()));
   CHECK(outbox.counts().bytes == 100'000);
@@ -42,38 +42,38 @@ TEST_CASE("An outbox without a rate limit sends at once and in order") {
 TEST_CASE("Urgent messages are sent first") {
   Outbox outbox(1e6);
   for (int i = 0; i < 60; ++i) {
-    outbox.push(Urgency::kBulk, datagram(3), kBegin);
-    outbox.push(Urgency::kState, datagram(2), kBegin);
-    outbox.push(Urgency::kFirst, datagram(1, 100), kBegin);
+    outbox.push(Urgency::kBulk, datagram(3), kOpened);
+    outbox.push(Urgency::kState, datagram(2), kOpened);
+    outbox.push(Urgency::kFirst, datagram(1, 100), kOpened);
   }
-  const auto sent = flushed(outbox, kBegin, 40ms);
+  const auto sent = flushed(outbox, kOpened, 40ms);
   CHECK(std::count(sent.begin(), sent.end(), 1) == 60);
   CHECK(std::is_sorted(sent.begin(), sent.end()));
 }
 
 TEST_CASE("A message that waits for 50 ms is dropped and counted, an asset after a second") {
   Outbox outbox(8 * 16'000);  // 16 kB per second
-  for (int i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(2), kBegin);
-  outbox.push(Urgency::kBulk, datagram(3), kBegin);
-  const auto sent = flushed(outbox, kBegin, 500ms);
+  for (int i = 0; i < 100; ++i) outbox.push(Urgency::kState, datagram(2), kOpened);
+  outbox.push(Urgency::kBulk, datagram(3), kOpened);
+  const auto sent = flushed(outbox, kOpened, 500ms);
   // 15 of 1028 bytes in the burst; the rest of the burst and 50 ms give one more.
   CHECK(std::count(sent.begin(), sent.end(), 2) == 16);
   CHECK(outbox.counts().late == 84);
   // Half of the burst is available again after 540 ms.
   CHECK(std::count(sent.begin(), sent.end(), 3) == 0);
-  CHECK(flushed(outbox, kBegin + 500ms, 200ms) == std::vector<int>{3});
-  outbox.push(Urgency::kBulk, datagram(3), kBegin + 700ms);
-  outbox.flush(kBegin + 5s, [](auto) { return true; });
+  CHECK(flushed(outbox, kOpened + 500ms, 200ms) == std::vector<int>{3});
+  outbox.push(Urgency::kBulk, datagram(3), kOpened + 700ms);
+  outbox.flush(kOpened + 5s, [](auto) { return true; });
   CHECK(outbox.counts().late == 84);
   CHECK(outbox.counts().late_bulk == 1);
 }
 
 TEST_CASE("Assets leave room for a group of state messages") {
   Outbox outbox(1e6);
-  for (int i = 0; i < 200; ++i) outbox.push(Urgency::kBulk, datagram(3), kBegin);
-  flushed(outbox, kBegin, 100ms);
-  for (int i = 0; i < 7; ++i) outbox.push(Urgency::kState, datagram(2), kBegin + 100ms);
-  CHECK(flushed(outbox, kBegin + 100ms, 1ns) == std::vector<int>(7, 2));
+  for (int i = 0; i < 200; ++i) outbox.push(Urgency::kBulk, datagram(3), kOpened);
+  flushed(outbox, kOpened, 100ms);
+  for (int i = 0; i < 7; ++i) outbox.push(Urgency::kState, datagram(2), kOpened + 100ms);
+  CHECK(flushed(outbox, kOpened + 100ms, 1ns) == std::vector<int>(7, 2));
 }
 
 TEST_CASE("A line sends no more than its rate and one burst over any time") {
@@ -82,7 +82,7 @@ TEST_CASE("A line sends no more than its rate and one burst over any time") {
   Outbox outbox(rate);
   std::vector<std::pair<double, double>> sent;  // s, bits with headers
   for (int i = 0; i < 2000; ++i) {
-    const HostTime t = kBegin + i * 2ms;
+    const HostTime t = kOpened + i * 2ms;
     for (auto n = dice() % 8; n > 0; --n)
       outbox.push(static_cast<Urgency>(dice() % 3), datagram(1, 40 + dice() % 1400), t);
     outbox.flush(t, [&](std::span<const std::uint8_t> d) {
@@ -102,14 +102,14 @@ TEST_CASE("A line sends no more than its rate and one burst over any time") {
 
 TEST_CASE("The number of bytes in an outbox is bounded") {
   Outbox outbox(16e3);
-  for (int i = 0; i < 5000; ++i) outbox.push(Urgency::kFirst, datagram(1), kBegin);
+  for (int i = 0; i < 5000; ++i) outbox.push(Urgency::kFirst, datagram(1), kOpened);
   CHECK(outbox.counts().late >= 5000 - static_cast<std::int64_t>(Outbox::kMaxBytes / 1000));
 }
 
 TEST_CASE("A message that the network rejects is counted and not sent again") {
   Outbox outbox(0);
-  outbox.push(Urgency::kFirst, datagram(1), kBegin);
-  outbox.flush(kBegin, [](auto) { return false; });
+  outbox.push(Urgency::kFirst, datagram(1), kOpened);
+  outbox.flush(kOpened, [](auto) { return false; });
   CHECK(outbox.counts().refused == 1);
-  CHECK(flushed(outbox, kBegin, 10ms).empty());
+  CHECK(flushed(outbox, kOpened, 10ms).empty());
 }

@@ -10,19 +10,21 @@
 #include <tactus/contact_t.hpp>
 #include <tactus/header_t.hpp>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kRun = 7;
+constexpr std::int64_t kStreamRun = 7;
 
 header_t header(std::int64_t sim_ns, std::int64_t incarnation = 1) {
   header_t h{};
   h.sim_time_ns = sim_ns;
   h.publish_time_ns = sim_ns + 1'000 * kMs;
-  h.run_id = kRun;
+  h.run_id = kStreamRun;
   h.incarnation = incarnation;
   return h;
 }
@@ -81,7 +83,7 @@ HostTime at(std::int64_t sim_ns) { return host_time(sim_ns + 1'000 * kMs); }
 }  // namespace
 
 TEST_CASE("A repeated event is delivered once, in its tick") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   for (int i = 0; i < 50; ++i)
     stream.push(events((10 + i) * kMs, {event(1, 1, contact_event_t::BEGIN, 9'500'000)}), at((10 + i) * kMs));
   CHECK(stream.take_events(sim_time(9 * kMs)).empty());
@@ -111,7 +113,7 @@ TEST_CASE("Events are delivered once and in order of time when messages are lost
       if (random() % 4 == 0) wire.emplace_back(arrival + 2 * kMs, events(step * kMs, young));
     }
     std::sort(wire.begin(), wire.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    ContactStream stream(kRun);
+    ContactStream stream(kStreamRun);
     std::vector<std::int64_t> got;
     for (const auto& [arrival, message] : wire) {
       stream.push(message, at(arrival));
@@ -130,7 +132,7 @@ TEST_CASE("Events are delivered once and in order of time when messages are lost
 }
 
 TEST_CASE("A sampled state has the status exact, interpolated, held, stale or none") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   CHECK(stream.state_at(sim_time(0)).status == SampleStatus::kNone);
   stream.push(frame(10 * kMs, {contact(1, 2)}), at(10 * kMs));
   stream.push(frame(20 * kMs, {contact(1, 4)}), at(20 * kMs));
@@ -144,7 +146,7 @@ TEST_CASE("A sampled state has the status exact, interpolated, held, stale or no
 }
 
 TEST_CASE("A snapshot is used only when all its pages have arrived, in any order") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   stream.push(frame(1 * kMs, {contact(1, 1), contact(2, 1)}), at(1 * kMs));
   stream.push(frame(2 * kMs, {contact(2, 1)}, 1, 2), at(2 * kMs));
   CHECK(stream.state_at(sim_time(2 * kMs)).value.size() == 2);
@@ -155,7 +157,7 @@ TEST_CASE("A snapshot is used only when all its pages have arrived, in any order
 }
 
 TEST_CASE("Up to 40 incomplete snapshots are completed by late pages") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   for (int ms = 0; ms < 40; ++ms) stream.push(frame(ms * kMs, {contact(1, static_cast<float>(ms * ms))}, 0, 2), at(ms * kMs));
   for (int ms = 39; ms >= 0; --ms) stream.push(frame(ms * kMs, {}, 1, 2), at((80 - ms) * kMs));
   for (int ms = 0; ms < 40; ++ms) {
@@ -167,7 +169,7 @@ TEST_CASE("Up to 40 incomplete snapshots are completed by late pages") {
 }
 
 TEST_CASE("Interpolation does not cross a begin or an end") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   stream.push(frame(10 * kMs, {}), at(10 * kMs));
   stream.push(events(20 * kMs, {event(1, 1, contact_event_t::BEGIN, 15 * kMs)}), at(20 * kMs));
   stream.push(frame(20 * kMs, {contact(1, 2)}), at(20 * kMs));
@@ -179,7 +181,7 @@ TEST_CASE("Interpolation does not cross a begin or an end") {
 }
 
 TEST_CASE("A restart of the simulation ends all contacts, and messages of the old one are ignored") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   stream.push(frame(10 * kMs, {contact(1, 2)}, 0, 1, 1), at(10 * kMs));
   stream.push(frame(1 * kMs, {}, 0, 1, 2), at(90 * kMs));
   CHECK(stream.restarts() == 1);
@@ -190,7 +192,7 @@ TEST_CASE("A restart of the simulation ends all contacts, and messages of the ol
 }
 
 TEST_CASE("A replayed log that restarts is a new epoch of the same incarnation") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   stream.push(frame(5000 * kMs, {contact(1, 2)}), at(5000 * kMs));
   stream.push(events(5000 * kMs, {event(1, 1, contact_event_t::BEGIN, 4999 * kMs)}), at(5000 * kMs));
   CHECK(stream.take_events(SimTime::max()).size() == 1);
@@ -200,7 +202,7 @@ TEST_CASE("A replayed log that restarts is a new epoch of the same incarnation")
 }
 
 TEST_CASE("Messages of another run are mapped to the own clock by their arrival") {
-  ContactStream stream(kRun + 1);  // so that the messages above belong to another run
+  ContactStream stream(kStreamRun + 1);  // so that the messages above belong to another run
   // Their clock runs 1000 s behind ours; latency 1 ms, once 0.1 ms.
   const auto ours = [](std::int64_t theirs) { return host_time(theirs + 1'000'000 * kMs); };
   for (std::int64_t step = 0; step < 100; ++step) {
@@ -218,7 +220,7 @@ TEST_CASE("Messages of another run are mapped to the own clock by their arrival"
 }
 
 TEST_CASE("The integral over a tick is the time average of force and area during contact") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   for (std::int64_t step = 0; step <= 40; ++step)
     stream.push(frame(step * kMs, step >= 10 && step < 20 ? std::vector{contact(1, 3)} : std::vector<contact_t>{}),
                 at(step * kMs));
@@ -236,7 +238,7 @@ TEST_CASE("The integral over a tick is the time average of force and area during
 }
 
 TEST_CASE("The integral has a part for each touched body, and the parts add up to the total") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   contact_t first = contact(1, 3), second = contact(2, 1), same = contact(3, 2);
   second.body_a = 7, second.material_a = 9;
   for (std::int64_t step = 0; step <= 20; ++step) {
@@ -259,7 +261,7 @@ TEST_CASE("The integral has a part for each touched body, and the parts add up t
 }
 
 TEST_CASE("A contact of 3 ms between two snapshots is integrated from its events") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   stream.push(frame(0, {}), at(0));
   stream.push(frame(20 * kMs, {}), at(20 * kMs));
   stream.push(
@@ -272,7 +274,7 @@ TEST_CASE("A contact of 3 ms between two snapshots is integrated from its events
 }
 
 TEST_CASE("A snapshot far in the future is rejected, and the next valid one is accepted") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   stream.push(frame(10 * kMs, {contact(1, 1)}), at(10 * kMs));
   SECTION("the clock of the forged snapshot is correct") {
     contact_frame_t forged = frame(10 * kMs, {contact(9, 9)});
@@ -300,7 +302,7 @@ TEST_CASE("A snapshot far in the future is rejected, and the next valid one is a
 }
 
 TEST_CASE("A forged first message is discarded after contradicting messages") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   contact_frame_t forged = frame(3'600'000 * kMs, {contact(9, 9)});
   forged.header.publish_time_ns = forged.clock.host_ns = 1'000 * kMs;
   contact_events_t lie = events(3'600'000 * kMs, {event(77, 7, contact_event_t::HIT, 3'600'000 * kMs)});
@@ -316,7 +318,7 @@ TEST_CASE("A forged first message is discarded after contradicting messages") {
 
 TEST_CASE("A snapshot published 20 ms ahead is accepted at any speed of the simulation") {
   for (const double rate : {0.01, 1.0, 5.0}) {
-    ContactStream stream(kRun);
+    ContactStream stream(kStreamRun);
     for (int ms = 0; ms < 3000; ms += 16) {
       const auto sim_ns = static_cast<std::int64_t>(ms * rate * kMs);
       contact_frame_t m = frame(sim_ns + 20 * kMs, {contact(1, 1)});
@@ -330,7 +332,7 @@ TEST_CASE("A snapshot published 20 ms ahead is accepted at any speed of the simu
 }
 
 TEST_CASE("Events far in the future are rejected, current ones are delivered") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   std::vector<contact_event_t> lies;
   for (int i = 0; i < 5000; ++i) lies.push_back(event(1000 + i, i, contact_event_t::HIT, 3'600'000 * kMs + i));
   stream.push(events(10 * kMs, {event(1, 1, contact_event_t::HIT, 9 * kMs)}), at(10 * kMs));
@@ -342,7 +344,7 @@ TEST_CASE("Events far in the future are rejected, current ones are delivered") {
 }
 
 TEST_CASE("When too many events are pending, the latest are dropped") {
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   std::vector<contact_event_t> early, late;
   for (int i = 0; i < 5000; ++i) late.push_back(event(10'000 + i, i, contact_event_t::HIT, 500 * kMs + i));
   for (int i = 0; i < 10; ++i) early.push_back(event(i, i, contact_event_t::HIT, 9 * kMs + i));
@@ -353,7 +355,7 @@ TEST_CASE("When too many events are pending, the latest are dropped") {
 
 TEST_CASE("Contacts are kept for a modality that presents up to 10 s late") {
   const std::int64_t late = GENERATE(150, 2'000, 10'000) * kMs;
-  ContactStream stream(kRun);
+  ContactStream stream(kStreamRun);
   for (std::int64_t ms = 0; ms < 12'000; ++ms) {
     stream.extend_history(Nanoseconds(late));
     contact_t touched = contact(1, 1e-3f * static_cast<float>(ms));

@@ -11,13 +11,13 @@
 #include <tactus/contact_t.hpp>
 
 #include "sync/resampling/contact_stream.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 struct Frame {
   std::int64_t now_ms = 0, time_ms = 0, seq = 0;

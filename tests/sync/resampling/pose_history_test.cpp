@@ -7,21 +7,22 @@
 #include <tactus/tool_state_t.hpp>
 
 #include "lcmtypes/vectors.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
+using tactus::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kRun = 3;
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kPoseRun = 3;
 
 // A head that moves along +x at 2 m/s and rotates about z at 1 rad/s.
 double angle_at(double s) { return 1.0 * s; }
 tool_state_t head_at(std::int64_t host_ns, std::int64_t incarnation = 9) {
   const double s = 1e-9 * static_cast<double>(host_ns);
   tool_state_t m{};
-  m.header.run_id = kRun;
+  m.header.run_id = kPoseRun;
   m.header.incarnation = incarnation;
   m.header.sim_time_ns = -1;
   m.header.publish_time_ns = host_ns;
@@ -33,7 +34,7 @@ tool_state_t head_at(std::int64_t host_ns, std::int64_t incarnation = 9) {
 }
 
 struct Heard {
-  PoseHistory history{kRun};
+  PoseHistory history{kPoseRun};
   // A report every 4 ms, each with a latency of 1 ms.
   explicit Heard(std::int64_t until_ms = 400) {
     for (std::int64_t t = 0; t <= until_ms * kMs; t += 4 * kMs) history.push(head_at(t), host_time(t + kMs));
@@ -52,7 +53,7 @@ double error_rad(const Sample<BodyPose>& s, double ms) {
 }  // namespace
 
 TEST_CASE("An empty history has no pose") {
-  CHECK(PoseHistory(kRun).at(host_time(kMs)).status == SampleStatus::kNone);
+  CHECK(PoseHistory(kPoseRun).at(host_time(kMs)).status == SampleStatus::kNone);
 }
 
 TEST_CASE("A pose is exact at a report and interpolated between reports") {
@@ -112,10 +113,10 @@ TEST_CASE("forget() removes all poses, and later poses are not interpolated with
 }
 
 TEST_CASE("A replayed log is read by arrival") {
-  PoseHistory history(kRun);
+  PoseHistory history(kPoseRun);
   for (std::int64_t t = 0; t <= 200 * kMs; t += 4 * kMs) {
     tool_state_t m = head_at(t);
-    m.header.run_id = kRun + 1;
+    m.header.run_id = kPoseRun + 1;
     history.push(m, host_time(t + 5'000 * kMs));
   }
   const auto s = history.at(host_time(5'101 * kMs));

@@ -18,10 +18,12 @@
 #include "lcmtypes/vectors.h"
 #include "sync/clocks/clock_maps.h"
 #include "sync/time/time.h"
+#include "tests/times.h"
 
 namespace tactus::hostile {
 
-inline constexpr std::int64_t kMs = 1'000'000;
+using test::kMs;
+
 inline constexpr std::int64_t kRun = 7;
 inline constexpr std::int32_t kOurClock = 1, kTheirClock = 2;
 inline constexpr int kTool = 0, kToolBody = 50;

@@ -2,17 +2,19 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/thermal_node/support/device_time.h"
+
 using namespace tactus;
 using namespace std::chrono_literals;
 using thermal::DatedSender;
 using Result = DatedSender::Result;
+using tactus::thermal::test::at;
+using tactus::thermal::test::kClock;
 
 namespace {
 
-constexpr std::int32_t kClock = 77, kForeign = 78;
+constexpr std::int32_t kForeign = 78;
 constexpr auto kSilence = 300ms;
-
-sync::HostTime at(std::int64_t ms) { return sync::host_time(1'000'000'000 + ms * 1'000'000); }
 
 // A message of sender `who` with number `seq`, sent at sent_ms.
 header_t header(std::int64_t who, std::int64_t seq, std::int64_t sent_ms, std::int32_t clock = kClock) {

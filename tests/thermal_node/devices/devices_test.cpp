@@ -4,6 +4,7 @@
 #include <tactus/thermal_device_t.hpp>
 
 #include "lcmtypes/valid.h"
+#include "tests/thermal_node/support/device_time.h"
 #include "thermal_node/devices/external.h"
 #include "thermal_node/devices/make_device.h"
 #include "thermal_node/devices/simulated_peltier.h"
@@ -11,10 +12,7 @@
 using namespace tactus;
 using namespace std::chrono_literals;
 using thermal::PlateReading;
-
-namespace {
-sync::HostTime at(std::int64_t ms) { return sync::host_time(1'000'000'000 + ms * 1'000'000); }
-}  // namespace
+using tactus::thermal::test::at;
 
 TEST_CASE("The simulated display follows its command and reports its state") {
   thermal::SimulatedPeltier device({}, {}, 33);

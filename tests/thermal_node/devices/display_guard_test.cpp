@@ -7,18 +7,18 @@
 #include <cstring>
 #include <random>
 
+#include "tests/thermal_node/support/device_time.h"
 #include "tests/thermal_node/support/limits_trial.h"
 #include "thermal_node/devices/simulated_peltier.h"
 
 using namespace tactus;
 using namespace tactus::thermal;
+using tactus::thermal::test::at;
+using tactus::thermal::test::kClock;
 
 namespace {
 
-constexpr std::int32_t kClock = 77;
 constexpr std::int64_t kRun = 4;
-
-sync::HostTime at(std::int64_t ms) { return sync::host_time(1'000'000'000 + ms * 1'000'000); }
 
 thermal_state_t command(float degC, std::int64_t seq, std::int64_t sent_ms, std::int64_t incarnation = 5) {
   thermal_state_t m{};

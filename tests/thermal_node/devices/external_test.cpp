@@ -4,14 +4,14 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
+#include "tests/thermal_node/support/device_time.h"
+
 using namespace tactus;
 using namespace tactus::thermal;
+using tactus::thermal::test::at;
+using tactus::thermal::test::kClock;
 
 namespace {
-
-constexpr std::int32_t kClock = 77;
-
-sync::HostTime at(std::int64_t ms) { return sync::host_time(1'000'000'000 + ms * 1'000'000); }
 
 thermal_device_t reading(double degC, std::int64_t incarnation, std::int64_t seq, std::int64_t sent_ms) {
   thermal_device_t m = to_message({degC, 30}, 0);

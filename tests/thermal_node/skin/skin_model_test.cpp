@@ -12,11 +12,11 @@ using namespace tactus::thermal;
 namespace {
 constexpr double kSkin = 1181.0588469674;    // sqrt(0.37 * 1000 * 3770)
 const SkinProperties kDry{33, kSkin, 0, 0};  // no blood, no air: as in the closed form
-struct Material {
+struct Touched {
   const char* name;
   double effusivity, conductivity;
 };
-const Material kMaterials[] = {{"copper", 37137, 401}, {"steel", 7493, 14.9}, {"granite", 2385, 2.79},
+const Touched kMaterials[] = {{"copper", 37137, 401}, {"steel", 7493, 14.9}, {"granite", 2385, 2.79},
                                {"glass", 1620, 1.4},   {"ABS", 514, 0.18},    {"foam", 48, 0.03}};
 }  // namespace
 
@@ -24,7 +24,7 @@ TEST_CASE("The numeric skin model follows the closed form from 20 ms to 100 s fo
   // Space: neighbouring cells grow by g - 1 = 12 %, and the centred difference errs by about (g - 1)^2/12 = 0.12 %
   // of the change; the surface cell adds its own width over the depth reached, (0.02)^2/(12 t) < 0.2 % at 20 ms.
   // Time: second order, (5 ms/tau)^2/10 < 0.1 % with tau >= 0.1 s. Together below 0.5 % of the change.
-  for (const Material& m : kMaterials) {
+  for (const Touched& m : kMaterials) {
     const double h = contact_conductance_W_m2K(m.conductivity);
     const test::SteadyContact exact{kSkin, m.effusivity, h, 33, 23};
     SkinModel skin(kDry);

@@ -14,7 +14,7 @@ using namespace tactus::thermal::test;
 
 namespace {
 
-constexpr double kSkin = 1181.0588469674;  // sqrt(0.37 * 1000 * 3770)
+constexpr double kSteadySkin = 1181.0588469674;  // sqrt(0.37 * 1000 * 3770)
 
 struct Row {
   const char* name;
@@ -33,7 +33,7 @@ const Row kTable[] = {{"copper", 37137, 401, -3.80, -6.77, -8.65},
                       {"oak", 470, 0.17, -1.17, -2.04, -2.56},
                       {"polyurethane foam", 48, 0.03, -0.22, -0.32, -0.37}};
 
-SteadyContact contact(double effusivity, double h) { return {kSkin, effusivity, h, 33, 23}; }
+SteadyContact contact(double effusivity, double h) { return {kSteadySkin, effusivity, h, 33, 23}; }
 
 }  // namespace
 
@@ -79,7 +79,7 @@ TEST_CASE("Heat flux out of the skin is that of its surface temperature by Duham
       sum += (previous - here) / std::sqrt(t) / std::cos(mid);
       previous = here;
     }
-    CHECK(kSkin / std::sqrt(M_PI) * sum == Approx(c.heat_flux_W_m2(t)).epsilon(2e-3));
+    CHECK(kSteadySkin / std::sqrt(M_PI) * sum == Approx(c.heat_flux_W_m2(t)).epsilon(2e-3));
   }
 }
 

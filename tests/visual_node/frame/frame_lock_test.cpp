@@ -23,18 +23,18 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr std::int64_t kRun = 3;
+constexpr std::int64_t kLockRun = 3;
 constexpr std::int32_t kSimClock = 100;
-constexpr std::int64_t kBegin_ns = 7'200'000'000'000;
+constexpr std::int64_t kLockBegin_ns = 7'200'000'000'000;
 
-struct Seen {
+struct SeenTimes {
   std::int64_t world_ns, head_ns, due_ns;
 };
 
 // One wall: its own clock, drawing time and received messages.
 struct Wall {
   Wall(std::int32_t clock, sync::Nanoseconds ahead_of_room, Settings settings, sync::Nanoseconds draws)
-      : maps(kRun), ahead(ahead_of_room), draws(draws), lock({kRun, clock, &maps}, "visual", clock) {
+      : maps(kLockRun), ahead(ahead_of_room), draws(draws), lock({kLockRun, clock, &maps}, "visual", clock) {
     settings.room = "cave4";
     scene_t scene = test::empty_scene();
     test::add_tool(scene, 0.01);
@@ -42,9 +42,9 @@ struct Wall {
     lock.load(scene, settings);
     if (clock == kSimClock) return;
     clock_map_t m{};
-    m.header.run_id = kRun, m.header.incarnation = clock;
+    m.header.run_id = kLockRun, m.header.incarnation = clock;
     m.of_clock = kSimClock, m.to_clock = clock, m.offset_ns = -ahead.count(), m.uncertainty_ns = 20'000;
-    m.at_ns = kBegin_ns + ahead.count();
+    m.at_ns = kLockBegin_ns + ahead.count();
     maps.observe(m, {});
   }
   sync::HostTime to_host(std::int64_t room_ns) const { return sync::host_time(room_ns) + ahead; }
@@ -53,12 +53,12 @@ struct Wall {
   sync::Nanoseconds ahead, draws;
   FrameLock lock;
   std::int64_t busy_until_ns = 0, frames = 0;
-  std::map<std::int64_t, Seen> seen;
+  std::map<std::int64_t, SeenTimes> seen;
   std::optional<LockedFrame> drawing;
 };
 
 // A bus and its walls, simulated in steps of 0.1 ms of the room's clock.
-struct Room {
+struct RoomBus {
   std::mt19937 random{7};
   std::vector<std::unique_ptr<Wall>> walls;
   double lost = 0;
@@ -94,7 +94,7 @@ struct Room {
   }
   header_t stamp(std::int64_t sim, std::int64_t incarnation, std::int64_t seq) const {
     header_t h{};
-    h.sim_time_ns = sim, h.publish_time_ns = t, h.clock = kSimClock, h.run_id = kRun, h.incarnation = incarnation,
+    h.sim_time_ns = sim, h.publish_time_ns = t, h.clock = kSimClock, h.run_id = kLockRun, h.incarnation = incarnation,
     h.seq = seq;
     return h;
   }
@@ -149,7 +149,7 @@ struct Room {
   }
 
  public:
-  std::int64_t t = kBegin_ns, held_ns = 0, late_ns = 0, asked_ns = 0;
+  std::int64_t t = kLockBegin_ns, held_ns = 0, late_ns = 0, asked_ns = 0;
   std::multimap<std::int64_t, std::function<void(std::int64_t)>> pending;
 };
 
@@ -162,7 +162,7 @@ Common common(const Wall& a, const Wall& b) {
   Common c;
   for (const auto& [number, x] : a.seen) {
     const auto y = b.seen.find(number);
-    if (y == b.seen.end() || x.due_ns < kBegin_ns + 1'000'000'000) continue;
+    if (y == b.seen.end() || x.due_ns < kLockBegin_ns + 1'000'000'000) continue;
     CHECK(x.due_ns == y->second.due_ns);
     ++c.frames, c.world += x.world_ns == y->second.world_ns, c.head += x.head_ns == y->second.head_ns;
   }
@@ -172,7 +172,7 @@ Common common(const Wall& a, const Wall& b) {
 }  // namespace
 
 TEST_CASE("Walls with different clocks draw each frame at one time with one head pose and skip none") {
-  Room room;
+  RoomBus room;
   room.add(kSimClock, {}, milliseconds(5));
   room.add(2, std::chrono::hours(1), milliseconds(9));
   room.add(3, -std::chrono::minutes(50), milliseconds(12));
@@ -190,7 +190,7 @@ TEST_CASE("Walls with different clocks draw each frame at one time with one head
 TEST_CASE("A wall that needs 100 ms shows every sixth or seventh frame at the time of the others") {
   Settings settings;
   settings.frame_lag_s = 0.12;  // longer than it draws: then the head is the same too
-  Room room;
+  RoomBus room;
   room.add(kSimClock, {}, milliseconds(5), settings);
   room.add(2, std::chrono::hours(1), milliseconds(100), settings);
   room.run(10);
@@ -203,7 +203,7 @@ TEST_CASE("A wall that needs 100 ms shows every sixth or seventh frame at the ti
 }
 
 TEST_CASE("With a short lag a slow wall draws the same time with an older head pose and reports it") {
-  Room room;
+  RoomBus room;
   room.add(kSimClock, {}, milliseconds(5));
   Wall& slow = room.add(2, std::chrono::hours(1), milliseconds(100));
   room.run(6);
@@ -216,7 +216,7 @@ TEST_CASE("With a short lag a slow wall draws the same time with an older head p
 }
 
 TEST_CASE("Walls stay together while the simulation slows down, pauses and resumes") {
-  Room room;
+  RoomBus room;
   room.add(kSimClock, {}, milliseconds(4));
   room.add(2, milliseconds(777), milliseconds(11));
   room.run(2);
@@ -234,7 +234,7 @@ TEST_CASE("Walls stay together while the simulation slows down, pauses and resum
 
 TEST_CASE(
     "A new presentation delay applies to all walls and moves the world but not the head") {
-  Room room;
+  RoomBus room;
   Wall& a = room.add(kSimClock, {}, milliseconds(4));
   Wall& b = room.add(2, milliseconds(777), milliseconds(11));
   room.asked_ns = 40'000'000;
@@ -244,16 +244,16 @@ TEST_CASE(
   const Common c = common(a, b);
   CHECK(c.frames >= 298);
   CHECK(c.world == c.frames);
-  const Seen& last = a.seen.rbegin()->second;
+  const SeenTimes& last = a.seen.rbegin()->second;
   // The world began at kBegin at rate 1. It is published at the end of each ms, so it is 1 ms ahead.
-  CHECK(last.due_ns - kBegin_ns - last.world_ns == 15'000'000 - 1'000'000);
+  CHECK(last.due_ns - kLockBegin_ns - last.world_ns == 15'000'000 - 1'000'000);
   // The head is the newest sample of 1 kHz that is older than the lag.
   CHECK(last.due_ns - last.head_ns >= 25'000'000);
   CHECK(last.due_ns - last.head_ns < 26'000'000);
 }
 
 TEST_CASE("With 1 % of the messages lost, 99 % of the frames match") {
-  Room room;
+  RoomBus room;
   room.lost = 0.005;  // for each of the two walls
   room.add(kSimClock, {}, milliseconds(4));
   room.add(2, milliseconds(777), milliseconds(11));
@@ -267,7 +267,7 @@ TEST_CASE("With 1 % of the messages lost, 99 % of the frames match") {
 }
 
 TEST_CASE("A slow wall does not delay other walls") {
-  Room alone, beside;
+  RoomBus alone, beside;
   alone.add(kSimClock, {}, milliseconds(5));
   beside.add(kSimClock, {}, milliseconds(5));
   beside.add(2, milliseconds(777), milliseconds(250));
@@ -276,18 +276,18 @@ TEST_CASE("A slow wall does not delay other walls") {
 }
 
 TEST_CASE("There is no lock without a room, with the lock off, or before the first message of sim_node") {
-  sync::ClockMaps maps(kRun);
+  sync::ClockMaps maps(kLockRun);
   const auto locked = [&](const char* room, const char* mode, bool received) {
-    FrameLock lock({kRun, kSimClock, &maps}, "visual", 1);
+    FrameLock lock({kLockRun, kSimClock, &maps}, "visual", 1);
     Settings s;
     s.room = room, s.frame_lock = mode;
     lock.load(test::empty_scene(), s);
     world_state_t w{};
-    w.header.run_id = kRun, w.header.clock = kSimClock, w.header.incarnation = 5,
-    w.header.publish_time_ns = kBegin_ns;
-    w.clock.host_ns = kBegin_ns, w.clock.rate = 1;
-    if (received) lock.push(w, sync::host_time(kBegin_ns));
-    return lock.begin_frame(sync::host_time(kBegin_ns + 50'000'000)).has_value();
+    w.header.run_id = kLockRun, w.header.clock = kSimClock, w.header.incarnation = 5,
+    w.header.publish_time_ns = kLockBegin_ns;
+    w.clock.host_ns = kLockBegin_ns, w.clock.rate = 1;
+    if (received) lock.push(w, sync::host_time(kLockBegin_ns));
+    return lock.begin_frame(sync::host_time(kLockBegin_ns + 50'000'000)).has_value();
   };
   CHECK(locked("cave4", "time", true));
   CHECK(locked("cave4", "wait", true));
@@ -297,7 +297,7 @@ TEST_CASE("There is no lock without a room, with the lock off, or before the fir
 }
 
 TEST_CASE("FRAME_SHOWN contains number, due time, simulated time and head pose of a frame") {
-  Room room;
+  RoomBus room;
   Wall& wall = room.add(kSimClock, {}, milliseconds(5));
   room.run(2);
   const LockedFrame frame = *wall.lock.begin_frame(wall.to_host(room.t));
@@ -311,7 +311,7 @@ TEST_CASE("FRAME_SHOWN contains number, due time, simulated time and head pose o
 }
 
 TEST_CASE("After a stall a wall detects missing inputs of its next frame") {
-  Room room;
+  RoomBus room;
   Wall& wall = room.add(2, std::chrono::hours(1), milliseconds(9));
   CHECK(wall.lock.inputs_complete(wall.to_host(room.t)));  // no lock before the first message
   room.run(1);

@@ -9,7 +9,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-struct Room {
+struct PeersOfWall {
   static constexpr std::int64_t kOwn = 1, kLeft = 2, kRight = 3;
   FramePeers peers;
   sync::HostTime now = sync::host_time(10'000'000'000);
@@ -31,14 +31,14 @@ struct Room {
 
 }  // namespace
 
-TEST_CASE_METHOD(Room, "A single wall waits neither for other walls nor for its own messages") {
+TEST_CASE_METHOD(PeersOfWall, "A single wall waits neither for other walls nor for its own messages") {
   CHECK(peers.ready(5, now));
   drawn(kOwn, 1);
   CHECK(peers.ready(5, now));
   CHECK(peers.present(now) == 0);
 }
 
-TEST_CASE_METHOD(Room, "A frame is ready when every present wall has drawn it or a later one") {
+TEST_CASE_METHOD(PeersOfWall, "A frame is ready when every present wall has drawn it or a later one") {
   drawn(kLeft, 5);
   drawn(kRight, 4);
   CHECK_FALSE(peers.ready(5, now));
@@ -46,7 +46,7 @@ TEST_CASE_METHOD(Room, "A frame is ready when every present wall has drawn it or
   CHECK(peers.ready(5, now));
 }
 
-TEST_CASE_METHOD(Room, "A wall without messages for a second is absent") {
+TEST_CASE_METHOD(PeersOfWall, "A wall without messages for a second is absent") {
   drawn(kLeft, 4);
   CHECK_FALSE(peers.ready(5, now + milliseconds(1000)));
   CHECK(peers.ready(5, now + milliseconds(1001)));
@@ -54,7 +54,7 @@ TEST_CASE_METHOD(Room, "A wall without messages for a second is absent") {
 }
 
 TEST_CASE_METHOD(
-    Room, "A wall that is always late is ignored after 250 ms and returns when it keeps up") {
+    PeersOfWall, "A wall that is always late is ignored after 250 ms and returns when it keeps up") {
   std::int64_t k = 100;
   int waited = 0;
   for (int i = 0; i < 60; ++i, ++k) waited += !frame(k, kLeft, k - 3);
@@ -65,7 +65,7 @@ TEST_CASE_METHOD(
   CHECK_FALSE(frame(k, kLeft, k - 1));
 }
 
-TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is ignored, one that misses every third frame is not") {
+TEST_CASE_METHOD(PeersOfWall, "A wall at a sixth of the rate is ignored, one that misses every third frame is not") {
   std::int64_t k = 100;
   for (int i = 0; i < 60; ++i, ++k) frame(k, kLeft, k / 6 * 6);
   CHECK(peers.ignored(now) == 1);
@@ -74,7 +74,7 @@ TEST_CASE_METHOD(Room, "A wall at a sixth of the rate is ignored, one that misse
   CHECK(peers.present(now) == 1);
 }
 
-TEST_CASE_METHOD(Room, "The number of walls is limited") {
+TEST_CASE_METHOD(PeersOfWall, "The number of walls is limited") {
   for (std::int64_t wall = 10; wall < 10'000; ++wall) drawn(wall, 1);
   CHECK(peers.present(now) == static_cast<int>(FramePeers::kMax));
 }

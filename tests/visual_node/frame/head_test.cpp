@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr std::int64_t kRun = 3;
+constexpr std::int64_t kHeadRun = 3;
 
 // A ball 2 m ahead of the scene's camera, which is 1 m high and looks along +y; and a head.
 scene_t scene_with_head() {
@@ -32,7 +32,7 @@ tool_state_t head_at(sync::HostTime t, const Eigen::Vector3d& position, double y
   tool_state_t m{};
   m.header.sim_time_ns = -1;
   m.header.publish_time_ns = sync::to_ns(t);
-  m.header.run_id = kRun;
+  m.header.run_id = kHeadRun;
   m.header.incarnation = 9;
   m.device.position_m = to_vec3(position);
   m.device.orientation = to_quat(Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
@@ -41,7 +41,7 @@ tool_state_t head_at(sync::HostTime t, const Eigen::Vector3d& position, double y
 }
 
 struct Seen {
-  FrameComposer composer{kRun, Settings{}};
+  FrameComposer composer{kHeadRun, Settings{}};
   sync::HostTime now = sync::host_time(10'000'000'000);
   Seen() { composer.load(scene_with_head(), {}, Settings{}); }
 

@@ -15,15 +15,15 @@ using namespace tactus::visual;
 
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240;
+constexpr int kVideoWidth = 320, kVideoHeight = 240;
 
 // Paints the rectangles of an overlay into luma.
 std::vector<std::uint8_t> paint(const std::vector<Rect>& overlay) {
-  std::vector<std::uint8_t> luma(kWidth * kHeight, 90);
+  std::vector<std::uint8_t> luma(kVideoWidth * kVideoHeight, 90);
   for (const Rect& r : overlay)
     for (int y = static_cast<int>(r.y); y < static_cast<int>(r.y + r.height); ++y)
       for (int x = static_cast<int>(r.x); x < static_cast<int>(r.x + r.width); ++x)
-        luma[static_cast<std::size_t>(y * kWidth + x)] = static_cast<std::uint8_t>(16 + 219 * r.red);
+        luma[static_cast<std::size_t>(y * kVideoWidth + x)] = static_cast<std::uint8_t>(16 + 219 * r.red);
   return luma;
 }
 
@@ -40,13 +40,13 @@ TEST_CASE(
     for (int tool = 0; tool < static_cast<int>(random() % 6); ++tool)
       samples.push_back({tool, static_cast<std::int64_t>(random() << 8 | random())});
     std::vector<Rect> overlay;
-    append_marker(overlay, frame, events, kHeight);
-    append_motion_marker(overlay, frame, samples, kHeight);
+    append_marker(overlay, frame, events, kVideoHeight);
+    append_motion_marker(overlay, frame, samples, kVideoHeight);
     auto luma = paint(overlay);
     for (auto& pixel : luma) pixel = static_cast<std::uint8_t>(std::clamp(pixel + noise(random), 0, 255));
-    REQUIRE(read_marker(luma, kWidth, kHeight, 0)->frame == frame);
+    REQUIRE(read_marker(luma, kVideoWidth, kVideoHeight, 0)->frame == frame);
     for (int row = 0; row < kMotionRows; ++row) {
-      const auto read = read_motion_marker(luma, kWidth, kHeight, row);
+      const auto read = read_motion_marker(luma, kVideoWidth, kVideoHeight, row);
       REQUIRE(read.has_value() == (row < static_cast<int>(samples.size())));
       if (!read) continue;
       const PoseSample& shown = samples[static_cast<std::size_t>(row)];
@@ -59,14 +59,14 @@ TEST_CASE(
 
 TEST_CASE("Rows of events and rows of motion are not confused") {
   std::vector<Rect> overlay;
-  append_marker(overlay, 5, std::vector<std::int64_t>(kMarkerRows + 4, 9), kHeight);
+  append_marker(overlay, 5, std::vector<std::int64_t>(kMarkerRows + 4, 9), kVideoHeight);
   auto luma = paint(overlay);
-  for (int row = 0; row < kMotionRows; ++row) CHECK_FALSE(read_motion_marker(luma, kWidth, kHeight, row));
+  for (int row = 0; row < kMotionRows; ++row) CHECK_FALSE(read_motion_marker(luma, kVideoWidth, kVideoHeight, row));
   overlay.clear();
-  append_motion_marker(overlay, 5, std::vector<PoseSample>(9), kHeight);
+  append_motion_marker(overlay, 5, std::vector<PoseSample>(9), kVideoHeight);
   luma = paint(overlay);
-  for (int row = 0; row < 2 * kMarkerRows; ++row) CHECK_FALSE(read_marker(luma, kWidth, kHeight, row));
-  CHECK_FALSE(read_motion_marker(luma, kWidth, kHeight, kMotionRows));  // no further rows than samples
+  for (int row = 0; row < 2 * kMarkerRows; ++row) CHECK_FALSE(read_marker(luma, kVideoWidth, kVideoHeight, row));
+  CHECK_FALSE(read_motion_marker(luma, kVideoWidth, kVideoHeight, kMotionRows));  // no further rows than samples
 }
 
 TEST_CASE("The stages of a frame have their own clocks, with the index of the video") {

@@ -12,12 +12,12 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr std::int64_t kRun = 3, kHour_ns = 3'600'000'000'000;
+constexpr std::int64_t kReaderRun = 3, kHour_ns = 3'600'000'000'000;
 constexpr std::int32_t kSim = 11, kOwn = 22, kThird = 33;
 
 header_t stamp(std::int64_t sent_ns, std::int32_t clock = kSim, std::int64_t incarnation = 9) {
   header_t h{};
-  h.publish_time_ns = sent_ns, h.clock = clock, h.run_id = kRun, h.incarnation = incarnation;
+  h.publish_time_ns = sent_ns, h.clock = clock, h.run_id = kReaderRun, h.incarnation = incarnation;
   return h;
 }
 sim_clock_t map_of(std::int64_t sim_ns, std::int64_t host_ns, double rate = 1) {
@@ -37,7 +37,7 @@ clock_map_t between(std::int32_t of, std::int32_t to, std::int64_t offset_ns, do
 }  // namespace
 
 TEST_CASE("On the host of sim_node the room clock is the host clock") {
-  RoomClockReader reader({kRun, kSim});
+  RoomClockReader reader({kReaderRun, kSim});
   CHECK_FALSE(reader.known());
   reader.on_message(stamp(5'000'000'000), map_of(1, 5'000'000'000), sync::host_time(5'000'300'000));
   const sync::HostTime now = sync::host_time(6'000'000'000);
@@ -51,10 +51,10 @@ TEST_CASE("On another host the room clock is mapped in both directions, exact to
   for (int trial = 0; trial < 200; ++trial) {
     const std::int64_t ahead = static_cast<std::int64_t>(random() % (2 * kHour_ns)) - kHour_ns;
     const double drift = (static_cast<double>(random() % 2001) - 1000) * 1e-7;  // +-100 ppm
-    sync::ClockMaps maps(kRun);
+    sync::ClockMaps maps(kReaderRun);
     const bool other_way = trial % 2;
     maps.observe(other_way ? between(kOwn, kSim, -ahead, drift) : between(kSim, kOwn, ahead, drift), {});
-    RoomClockReader reader({kRun, kOwn, &maps});
+    RoomClockReader reader({kReaderRun, kOwn, &maps});
     const std::int64_t sent = 2 * kHour_ns + ahead;
     reader.on_message(stamp(sent), map_of(1, sent), sync::host_time(2 * kHour_ns + 2'000'000'000));
     const sync::HostTime now = sync::host_time(2 * kHour_ns + 2'100'000'000);
@@ -69,7 +69,7 @@ TEST_CASE("On another host the room clock is mapped in both directions, exact to
 }
 
 TEST_CASE("A clock without a map is read by arrival and reported") {
-  RoomClockReader reader({kRun, kOwn});
+  RoomClockReader reader({kReaderRun, kOwn});
   for (int i = 0; i < 100; ++i)
     reader.on_message(stamp(kHour_ns + i * 1'000'000), map_of(i, kHour_ns + i * 1'000'000),
                 sync::host_time(i * 1'000'000 + 200'000 + (i * 7919) % 500'000));
@@ -83,7 +83,7 @@ TEST_CASE("The map at a time does not depend on later maps or the order of arriv
   std::mt19937 random(5);
   std::vector<int> order(200);
   for (int i = 0; i < 200; ++i) order[static_cast<std::size_t>(i)] = i;
-  RoomClockReader straight({kRun, kSim}), shuffled({kRun, kSim});
+  RoomClockReader straight({kReaderRun, kSim}), shuffled({kReaderRun, kSim});
   const auto on_message = [](RoomClockReader& reader, int i, int arrival_ms) {
     const std::int64_t sent = 1'000'000'000 + i * 5'000'000;
     reader.on_message(stamp(sent), map_of(i * 5'000'000, sent, 1 + 1e-6 * i),
@@ -105,10 +105,10 @@ TEST_CASE("The map at a time does not depend on later maps or the order of arriv
 }
 
 TEST_CASE("A stamp of a third host is mapped, or read by arrival without a map") {
-  sync::ClockMaps maps(kRun);
+  sync::ClockMaps maps(kReaderRun);
   maps.observe(between(kSim, kOwn, kHour_ns), {});
   maps.observe(between(kThird, kSim, 5'000'000'000), {});
-  RoomClockReader reader({kRun, kOwn, &maps});
+  RoomClockReader reader({kReaderRun, kOwn, &maps});
   reader.on_message(stamp(kHour_ns + 7), map_of(1, 7), sync::host_time(1'000'007));
   // The map is rounded twice.
   CHECK(std::abs(sync::to_ns(reader.sent(stamp(kHour_ns + 5'000'000'000, kThird), sync::host_time(1))) -
@@ -119,7 +119,7 @@ TEST_CASE("A stamp of a third host is mapped, or read by arrival without a map")
 }
 
 TEST_CASE("Another simulation on the same host keeps the clock, and one on another host changes it") {
-  RoomClockReader reader({kRun, kSim});
+  RoomClockReader reader({kReaderRun, kSim});
   reader.on_message(stamp(1'000'000'000), map_of(1, 1'000'000'000), sync::host_time(1'000'000'000));
   CHECK(reader.clocks() == 1);
   reader.on_message(stamp(2'000'000'000, kSim, 10), map_of(0, 2'000'000'000), sync::host_time(2'000'000'000));
@@ -130,7 +130,7 @@ TEST_CASE("Another simulation on the same host keeps the clock, and one on anoth
 }
 
 TEST_CASE("The number of maps is limited") {
-  RoomClockReader reader({kRun, kSim});
+  RoomClockReader reader({kReaderRun, kSim});
   for (int i = 0; i < 100'000; ++i)
     reader.on_message(stamp(1'000'000'000 + i * 1000), map_of(i, 1'000'000'000 + i * 1000),
                 sync::host_time(1'000'000'000 + i * 1000));

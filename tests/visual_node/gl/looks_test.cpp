@@ -73,10 +73,10 @@ void compare(const scene_t& scene, const visual::LookFiles& files, double tolera
   const visual::DrawList list = view.draw(poses, {});
   const Image image = draw(renderer, list);
   const auto& batches = list.translucent.empty() ? list.opaque : list.translucent;
-  const visual::Triangles& t = view.geometries()[static_cast<std::size_t>(batches[0].geometry)];
-  const visual::Instance& instance = list.instances[static_cast<std::size_t>(batches[0].first)];
+  const PlacedTriangles triangles(view.geometries()[static_cast<std::size_t>(batches[0].geometry)],
+                                  list.instances[static_cast<std::size_t>(batches[0].first)]);
   const Vector3d eye = to_eigen(scene.camera.position_m);
-  const auto hit = [&](double x, double y) { return meet(t, instance, eye, ray(scene, x, y)); };
+  const auto hit = [&](double x, double y) { return meet(triangles, eye, ray(scene, x, y)); };
   int held = 0;
   for (int y = 10; y < kHeight; y += 14)
     for (int x = 10; x < kWidth; x += 14) {
@@ -157,11 +157,11 @@ TEST_CASE("Gouraud shades the corners of the triangles and interpolates between 
   compare(scene, {}, kTolerance, [&](const Hit& hit, const Vector3d& eye) { return gouraud(scene, v, hit, eye); });
   // Phong shading does not match here; otherwise the test above could not distinguish them.
   double largest = 0;
-  const visual::Triangles ball = visual::unit_sphere(12);
   visual::Instance at_two;
   at_two.position << 2, 0, 0, 1;
+  const PlacedTriangles ball(visual::unit_sphere(12), at_two);
   for (double y = -0.4; y < 0.4; y += 0.01)
-    if (const auto hit = meet(ball, at_two, Vector3d::Zero(), Vector3d(1, y, 0.1).normalized()))
+    if (const auto hit = meet(ball, Vector3d::Zero(), Vector3d(1, y, 0.1).normalized()))
       largest = std::max(
           largest, (gouraud(scene, v, *hit, Vector3d::Zero()) - phong(scene, v, hit->point, Vector3d::Zero()))
                        .cwiseAbs()

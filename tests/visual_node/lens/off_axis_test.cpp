@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kWidth = 1024;
 // Float matrices: 24 bits, some operations, sums of terms up to ten times the result.
-constexpr double kRounding = 2e-5;
+constexpr double kFloatRounding = 2e-5;
 
-Vector2d seen(const Camera& camera, const Vector3d& place) {
+Vector2d clip_position(const Camera& camera, const Vector3d& place) {
   const Eigen::Vector4d clip =
       (camera.projection.cast<double>() * camera.view.cast<double>()) * place.homogeneous();
   REQUIRE(clip.w() > 0);
@@ -44,9 +44,9 @@ TEST_CASE("The corners of a wall map to those of its picture for every head posi
     for (const Vector3d& head : heads()) {
       CAPTURE(wall.name, head.transpose());
       const Camera camera = off_axis(wall, head, kWidth, 0.02, 100);
-      CHECK((seen(camera, wall.lower_left) - Vector2d(-1, -1)).norm() < kRounding);
-      CHECK((seen(camera, wall.lower_right) - Vector2d(1, -1)).norm() < kRounding);
-      CHECK((seen(camera, wall.upper_left) - Vector2d(-1, 1)).norm() < kRounding);
+      CHECK((clip_position(camera, wall.lower_left) - Vector2d(-1, -1)).norm() < kFloatRounding);
+      CHECK((clip_position(camera, wall.lower_right) - Vector2d(1, -1)).norm() < kFloatRounding);
+      CHECK((clip_position(camera, wall.upper_left) - Vector2d(-1, 1)).norm() < kFloatRounding);
       // Depth along the normal of the wall: from the near plane to the far one.
       const auto depth = [&](double away_m) {
         const Eigen::Vector4d clip =
@@ -78,7 +78,7 @@ TEST_CASE("Points behind an edge of two walls lie on matching pixels of both wal
         const Vector3d on_edge = ends[0] + share(random) * (ends[1] - ends[0]);
         const Vector3d behind = head + far(random) * (on_edge - head);
         const auto place = [&](const Wall& wall) {
-          const Vector2d p = seen(off_axis(wall, head, kWidth, 0.02, 100), behind);
+          const Vector2d p = clip_position(off_axis(wall, head, kWidth, 0.02, 100), behind);
           // Projected back onto the wall: the same place of the room.
           const Vector3d on_wall = wall.lower_left + 0.5 * (p.x() + 1) * (wall.lower_right - wall.lower_left) +
                                    0.5 * (p.y() + 1) * (wall.upper_left - wall.lower_left);
@@ -116,12 +116,12 @@ TEST_CASE("Both eyes see a point on the wall at one place, nearer points crossed
     const auto [left, right] = eyes(head, apart);
     CHECK((left - right).norm() == Approx(apart));
     const auto parallax = [&](const Vector3d& place) {
-      return Vector2d(seen(off_axis(wall, right, kWidth, 0.02, 100), place) -
-                      seen(off_axis(wall, left, kWidth, 0.02, 100), place));
+      return Vector2d(clip_position(off_axis(wall, right, kWidth, 0.02, 100), place) -
+                      clip_position(off_axis(wall, left, kWidth, 0.02, 100), place));
     };
     const Vector3d on_wall(1.524, across(random), 1.5 + across(random));
     const Vector3d from_eyes = on_wall - head.translation();
-    CHECK(parallax(on_wall).norm() < kRounding);
+    CHECK(parallax(on_wall).norm() < kFloatRounding);
     CHECK(parallax(head.translation() + 0.7 * from_eyes).x() < -1e-4);
     CHECK(parallax(head.translation() + 2 * from_eyes).x() > 1e-4);
   }
@@ -130,9 +130,9 @@ TEST_CASE("Both eyes see a point on the wall at one place, nearer points crossed
   const auto [left, right] = eyes(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 1.5)), apart);
   const Vector3d far(1e5, 3e4, 4e4);
   const Vector2d parallax =
-      seen(off_axis(wall, right, kWidth, 0.02, 100), far) - seen(off_axis(wall, left, kWidth, 0.02, 100), far);
+      clip_position(off_axis(wall, right, kWidth, 0.02, 100), far) - clip_position(off_axis(wall, left, kWidth, 0.02, 100), far);
   CHECK(0.5 * wall.width_m() * parallax.x() == Approx(apart).epsilon(0.01));
-  CHECK(std::abs(parallax.y()) < 2 * kRounding);
+  CHECK(std::abs(parallax.y()) < 2 * kFloatRounding);
 }
 
 TEST_CASE("An eye in the plane of a wall or behind it has a valid picture") {
@@ -141,7 +141,7 @@ TEST_CASE("An eye in the plane of a wall or behind it has a valid picture") {
     const Camera camera = off_axis(wall, {x, 0.2, 1}, kWidth, 0.02, 100);
     CHECK(camera.projection.allFinite());
     CHECK(camera.view.allFinite());
-    CHECK((seen(camera, wall.lower_left) - Vector2d(-1, -1)).norm() < 1e-3);
-    CHECK((seen(camera, wall.upper_left) - Vector2d(-1, 1)).norm() < 1e-3);
+    CHECK((clip_position(camera, wall.lower_left) - Vector2d(-1, -1)).norm() < 1e-3);
+    CHECK((clip_position(camera, wall.upper_left) - Vector2d(-1, 1)).norm() < 1e-3);
   }
 }

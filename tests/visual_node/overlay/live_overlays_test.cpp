@@ -1,5 +1,6 @@
 // All overlays together, on an in-process bus.
 #include "sync/bus/bus.h"
+#include "tests/times.h"
 #include "visual_node/overlay/live_overlays.h"
 
 #include <catch2/catch.hpp>
@@ -9,6 +10,7 @@
 
 using namespace tactus;
 using namespace tactus::visual;
+using tactus::test::at_ms;
 
 namespace {
 
@@ -17,8 +19,6 @@ sync::BusOptions memory() {
   options.memory = true;
   return options;
 }
-
-sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
 
 struct OverlayLayout {
   sync::Bus bus{sync::Identity::fresh("visual_node", 7), memory()};

@@ -9,13 +9,14 @@
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"
 #include "tests/lcmtypes/samples.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::visual;
+using tactus::test::at_ms;
 
 namespace {
 
-sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
 constexpr sync::Nanoseconds kSpan{1'500'000'000};  // slices of 10 ms
 
 std::vector<std::uint8_t> tool_state(int tool, float force_z_N, const char* node = "haptic_node") {

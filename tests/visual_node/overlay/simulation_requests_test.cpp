@@ -8,16 +8,16 @@
 #include <tactus/sim_reply_t.hpp>
 
 #include "lcmtypes/valid.h"
+#include "tests/times.h"
 #include "tests/visual_node/support/test_scene.h"
 #include "visual_node/scene_view/scene_view.h"
 
 using namespace tactus;
 using namespace tactus::test;
 using namespace tactus::visual;
+using tactus::test::at_ms;
 
 namespace {
-
-sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
 
 sim_reply_t reply(std::int64_t id, bool paused) {
   sim_reply_t m{};

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "sync/time/time.h"
+#include "tests/times.h"
 
 namespace tactus::test {
-
-inline sync::HostTime at_ms(std::int64_t ms) { return sync::HostTime{std::chrono::milliseconds(ms)}; }
 
 inline question_t question(std::int64_t id, int kind, std::int64_t seq = 0, std::int64_t incarnation = 1) {
   question_t m{};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -10,6 +11,8 @@
 #include <tactus/light_def_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/visual_def_t.hpp>
+#include <utility>
+#include <vector>
 
 #include "lcmtypes/vectors.h"
 #include "tests/visual_node/support/offscreen.h"
@@ -49,32 +52,44 @@ inline Vector3d ray(const scene_t& scene, double x, double y) {
   return (to_eigen(scene.camera).linear() * along).normalized();
 }
 
-// The triangles of one instance; attributes are interpolated here as the device does (Moeller and Trumbore 1997).
-inline std::optional<Hit> meet(const visual::Triangles& t, const visual::Instance& instance, const Vector3d& eye,
-                               const Vector3d& along) {
-  const Eigen::Quaterniond q(Eigen::Quaternionf(instance.orientation).cast<double>());
-  const Vector3d origin = instance.position.head<3>().cast<double>(),
-                 scale = instance.scale.head<3>().cast<double>();
-  const auto corner = [&](std::size_t i) {
-    Point p;
-    p.at = origin + q * Vector3d(t.positions[i].cast<double>().cwiseProduct(scale));
-    p.normal = q * t.normals[i].cast<double>();
-    if (!t.texcoords.empty()) p.uv = t.texcoords[i].cast<double>();
-    if (!t.tangents.empty()) {
-      p.tangent = q * Vector3d(t.tangents[i].head<3>().cast<double>().cwiseProduct(scale));
-      p.binormal_sign = static_cast<double>(t.tangents[i].w());
-    }
-    return p;
-  };
+// The triangles of one instance in the world, computed once for all rays.
+struct PlacedTriangles {
+  std::vector<std::array<Point, 3>> corners;
+  bool two_sided = false;
+
+  PlacedTriangles(const visual::Triangles& t, const visual::Instance& instance) : two_sided(t.two_sided) {
+    const Eigen::Quaterniond q(Eigen::Quaternionf(instance.orientation).cast<double>());
+    const Vector3d origin = instance.position.head<3>().cast<double>(),
+                   scale = instance.scale.head<3>().cast<double>();
+    const auto corner = [&](std::size_t i) {
+      Point p;
+      p.at = origin + q * Vector3d(t.positions[i].cast<double>().cwiseProduct(scale));
+      p.normal = q * t.normals[i].cast<double>();
+      if (!t.texcoords.empty()) p.uv = t.texcoords[i].cast<double>();
+      if (!t.tangents.empty()) {
+        p.tangent = q * Vector3d(t.tangents[i].head<3>().cast<double>().cwiseProduct(scale));
+        p.binormal_sign = static_cast<double>(t.tangents[i].w());
+      }
+      return p;
+    };
+    for (std::size_t i = 0; i + 2 < t.indices.size(); i += 3)
+      corners.push_back({corner(t.indices[i]), corner(t.indices[i + 1]), corner(t.indices[i + 2])});
+  }
+};
+
+// Attributes are interpolated here as the device does (Moeller and Trumbore 1997).
+inline std::optional<Hit> meet(const PlacedTriangles& t, const Vector3d& eye, const Vector3d& along) {
   std::optional<Hit> nearest;
-  for (std::size_t i = 0; i + 2 < t.indices.size(); i += 3) {
-    const std::array<Point, 3> c{corner(t.indices[i]), corner(t.indices[i + 1]), corner(t.indices[i + 2])};
+  for (const std::array<Point, 3>& c : t.corners) {
     const Vector3d e1 = c[1].at - c[0].at, e2 = c[2].at - c[0].at, p = along.cross(e2);
     const double det = e1.dot(p);
     if (std::abs(det) < 1e-15 || (det < 0 && !t.two_sided)) continue;
-    const Vector3d s = eye - c[0].at, r = s.cross(e1);
-    const double u = s.dot(p) / det, v = along.dot(r) / det, distance = e2.dot(r) / det;
-    if (u < 0 || v < 0 || u + v > 1 || distance <= 0 || (nearest && distance >= nearest->distance_m)) continue;
+    const Vector3d s = eye - c[0].at;
+    const double u = s.dot(p) / det;
+    if (u < 0 || u > 1) continue;
+    const Vector3d r = s.cross(e1);
+    const double v = along.dot(r) / det, distance = e2.dot(r) / det;
+    if (v < 0 || u + v > 1 || distance <= 0 || (nearest && distance >= nearest->distance_m)) continue;
     Hit hit{{}, c, {1 - u - v, u, v}, distance};
     const auto mixed = [&](auto member) {
       return std::remove_cvref_t<decltype(c[0].*member)>(

@@ -6,14 +6,14 @@
 #include <tactus/tool_state_t.hpp>
 
 #include "sync/bus/decode.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
 using namespace tactus::sync::spy;
+using tactus::test::at_ms;
 
 namespace {
-
-HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
 
 struct Heard {
   ClockMaps maps{7};

@@ -9,14 +9,14 @@
 #include <tactus/tool_state_t.hpp>
 
 #include "sync/bus/decode.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
 using namespace tactus::sync::spy;
+using tactus::test::at_ms;
 
 namespace {
-
-HostTime at_ms(std::int64_t ms) { return host_time(ms * 1'000'000); }
 
 // Number of characters that a terminal counts.
 std::size_t letters(const std::string& line) {
