@@ -56,7 +56,9 @@ def first_entry(path):
 
 
 def sessions_beside(folder, study):
-    """First entries of the journals of this study in the folder of all participants."""
+    """First entries of the journals of this study in the folder of all participants, OUT/STUDY; none in a folder of another name."""
+    if pathlib.Path(folder).name != study:
+        return []
     found = (first_entry(path) for path in sorted(pathlib.Path(folder).glob(f"*/{journal.NAME}")))
     return [entry for entry in found if entry is not None and entry["study"] == study]
 

@@ -9,7 +9,7 @@ import tempfile
 from tactus import terminal
 from tactus.paths import BIN
 from tactus.refusal import Refusal, sentence_of
-from tactus.study import felt_properties, study_file
+from tactus.study import felt_properties, fonts, study_file
 
 USAGE = """Validates a study file, and refuses it with line and reason if it has an error. Prints the plan of a participant, the number of trials, the
 duration, and the power of the study from simulated observers: the width of the 95 % interval of each estimate, or the smallest loss of success and the
@@ -111,7 +111,7 @@ def checked(study, options):
     from tactus.study import power
     from tactus.study.plan import Plan
     plan, assumed = Plan(study, options.participant), assumed_of(study, options)
-    lines = [*plan.describe(), profiles(study)]
+    lines = [*plan.describe(), profiles(study), *fonts.words(study)]
     parts, about = duration.of_session(study, plan.expected_trials), "at most" if study.task == "game" else "about"
     minutes = sum(seconds for _, seconds in parts) / 60
     lines.append(f"{plan.expected_trials} {'games' if study.task == 'game' else 'trials'}, {about} {minutes:.0f} minutes: "
