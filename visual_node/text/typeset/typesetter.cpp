@@ -24,14 +24,14 @@ struct FreeIter {
 };
 using Iter = std::unique_ptr<PangoLayoutIter, FreeIter>;
 
-bool right_to_left(const std::string& text) {
-  return pango_find_base_dir(text.data(), static_cast<int>(text.size())) == PANGO_DIRECTION_RTL;
+// The direction of its only paragraph.
+bool right_to_left(PangoLayout* layout) {
+  return pango_layout_line_get_resolved_direction(pango_layout_get_line_readonly(layout, 0)) == PANGO_DIRECTION_RTL;
 }
 
 // PANGO_ALIGN_LEFT means the edge at which a paragraph begins (pango_layout_set_auto_dir).
-PangoAlignment alignment(const TextBlock& block) {
-  const bool mirrored = right_to_left(block.text);
-  const bool right = block.edge == TextEdge::kRight || (block.edge == TextEdge::kNatural && mirrored);
+PangoAlignment alignment(TextEdge edge, bool mirrored) {
+  const bool right = edge == TextEdge::kRight || (edge == TextEdge::kNatural && mirrored);
   return right != mirrored ? PANGO_ALIGN_RIGHT : PANGO_ALIGN_LEFT;
 }
 
@@ -65,6 +65,20 @@ void add_missing(std::vector<char32_t>& missing, PangoLayout* layout) {
   } while (pango_layout_iter_next_run(iter.get()));
 }
 
+// For each byte of the text, the first byte of its cluster: where a cursor may stand.
+std::vector<std::size_t> cluster_begins(PangoLayout* layout, const std::string& text) {
+  int count = 0;
+  const PangoLogAttr* const attributes = pango_layout_get_log_attrs_readonly(layout, &count);
+  std::vector<std::size_t> begins;
+  std::size_t begin = 0;
+  for (int character = 0; begins.size() < text.size(); ++character) {
+    if (character < count && attributes[character].is_cursor_position) begin = begins.size();
+    const std::string_view rest = std::string_view(text).substr(begins.size());
+    begins.insert(begins.end(), std::max<std::size_t>(1, utf8_bytes(rest)), begin);
+  }
+  return begins;
+}
+
 struct Placed {
   Owned<PangoLayout> layout;
   DrawnBlock block;
@@ -90,8 +104,8 @@ struct Typesetter::Fonts {
     pango_layout_set_width(layout.get(), block.width_px * PANGO_SCALE);
     pango_layout_set_wrap(layout.get(), PANGO_WRAP_WORD_CHAR);
     pango_layout_set_spacing(layout.get(), block.size_px * PANGO_SCALE / 8);
-    pango_layout_set_alignment(layout.get(), alignment(block));
     pango_layout_set_text(layout.get(), block.text.data(), static_cast<int>(block.text.size()));
+    pango_layout_set_alignment(layout.get(), alignment(block.edge, right_to_left(layout.get())));
     return layout;
   }
 
@@ -106,7 +120,7 @@ struct Typesetter::Fonts {
     placed.top = above - logical.y;
     placed.block.rows = block.text.empty() ? 0 : above + logical.height + below;
     placed.block.line_rows = std::min(placed.block.rows, above + line.height);
-    placed.block.right_to_left = right_to_left(block.text);
+    placed.block.right_to_left = right_to_left(placed.layout.get());
     return placed;
   }
 };
@@ -156,6 +170,7 @@ DrawnText Typesetter::draw(const TextRequest& request) {
 
 std::vector<TextCluster> Typesetter::clusters(const TextBlock& block) {
   const Owned<PangoLayout> layout = fonts_->lay_out(block);
+  const std::vector<std::size_t> begins = cluster_begins(layout.get(), block.text);
   std::vector<TextCluster> found;
   const Iter iter(pango_layout_get_iter(layout.get()));
   int line = 0;
@@ -165,7 +180,14 @@ std::vector<TextCluster> Typesetter::clusters(const TextBlock& block) {
     if (!pango_layout_iter_get_run_readonly(iter.get())) continue;  // the end of a line
     PangoRectangle logical;
     pango_layout_iter_get_cluster_extents(iter.get(), nullptr, &logical);
-    found.push_back({static_cast<std::size_t>(pango_layout_iter_get_index(iter.get())), PANGO_PIXELS(logical.x), PANGO_PIXELS(logical.width), line});
+    const std::size_t begin = begins[static_cast<std::size_t>(pango_layout_iter_get_index(iter.get()))];
+    const int x = PANGO_PIXELS(logical.x), width = PANGO_PIXELS(logical.width);
+    // A mark may be a glyph of its own, before or after its letter.
+    const auto known = std::find_if(found.begin(), found.end(), [&](const TextCluster& c) { return c.first_byte == begin; });
+    if (known == found.end())
+      found.push_back({begin, x, width, line});
+    else
+      known->x_px = std::min(known->x_px, x), known->width_px += width;
   } while (pango_layout_iter_next_cluster(iter.get()));
   return found;
 }
