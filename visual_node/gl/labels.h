@@ -1,4 +1,5 @@
-// Draws labels over the picture. A text picture is uploaded when it is first drawn, and stays while pictures use it.
+// Draws labels over the picture. A text picture is uploaded when it is first drawn, and stays while pictures use
+// it.
 #pragma once
 
 #include <memory>
@@ -22,7 +23,8 @@ class TextTexture {
 
 class Labels {
  public:
-  // Draws into the bound picture of that size, with blending as set by the caller. A label without a picture, or with rows outside of it, is left out.
+  // Draws into the bound picture of that size, with blending as set by the caller. A label without a picture, or
+  // with rows outside of it, is left out.
   void draw(const std::vector<Label>& labels, int width, int height);
   // Number of text pictures on the device.
   std::size_t stored() const { return stored_.size(); }

@@ -1,5 +1,5 @@
-// The questions of a study on a running node: receives them, draws them into each picture, and publishes answers by
-// key or gamepad if it has a window.
+// The questions of a study on a running node: receives them, draws them into each picture, and publishes answers
+// by key or gamepad if it has a window.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,8 @@ namespace tactus::visual {
 
 class LiveQuestions {
  public:
-  // at_once: a question in characters beyond ASCII is typeset at once, for a log; otherwise it appears when it is typeset.
+  // at_once: a question in characters beyond ASCII is typeset at once, for a log; otherwise it appears when it is
+  // typeset.
   LiveQuestions(sync::Bus& bus, bool at_once);
 
   void configure(const Settings& settings);

@@ -33,14 +33,21 @@ std::string hint(const question_t& m) {
 }  // namespace
 
 QuestionLayout::QuestionLayout(const question_t& m, float width, float size, float leading)
-    : m_(m), width_(width), size_(size), small_(std::max(1.0f, size - 1)), leading_(leading), inner_(width - 2 * kPadding * size) {
+    : m_(m),
+      width_(width),
+      size_(size),
+      small_(std::max(1.0f, size - 1)),
+      leading_(leading),
+      inner_(width - 2 * kPadding * size) {
   blocks_.push_back({m.text, inner_, size_});
   if (m.kind == question_t::CHOICE)
-    for (const std::string& c : m.choices) blocks_.push_back({c, inner_ - kChoiceIndent * size_, size_}), ++choices_;
+    for (const std::string& c : m.choices)
+      blocks_.push_back({c, inner_ - kChoiceIndent * size_, size_}), ++choices_;
   if (m.kind == question_t::NUMBER) {
     const float half = inner_ / 2 - 4 * size_;
     blocks_.push_back({m.count == 2 ? m.choices[0] : number_text(m.lowest, m.step), half, size_, TextEdge::kLeft});
-    blocks_.push_back({m.count == 2 ? m.choices[1] : number_text(m.highest, m.step), half, size_, TextEdge::kRight});
+    blocks_.push_back(
+        {m.count == 2 ? m.choices[1] : number_text(m.highest, m.step), half, size_, TextEdge::kRight});
     ends_ = 2;
   }
   blocks_.push_back({hint(m), inner_, small_});
@@ -58,8 +65,8 @@ float QuestionLayout::height(const std::vector<float>& blocks) const {
   return h;
 }
 
-void QuestionLayout::draw(std::vector<Rect>& overlay, double number, float x, float y, const std::vector<float>& blocks, bool mirrored,
-                          const DrawBlock& draw_block) const {
+void QuestionLayout::draw(std::vector<Rect>& overlay, double number, float x, float y,
+                          const std::vector<float>& blocks, bool mirrored, const DrawBlock& draw_block) const {
   fill(overlay, x, y, width_, height(blocks), kDark, kOpacity);
   const float left = x + kPadding * size_;
   y += kPadding * size_;
@@ -76,11 +83,12 @@ void QuestionLayout::draw(std::vector<Rect>& overlay, double number, float x, fl
   }
   if (ends_ > 0) y = slider(overlay, number, left, y + gap(), blocks, draw_block);
   y += gap();
-  for (std::size_t i = 1 + choices_ + ends_; i < blocks.size(); y += blocks[i], ++i) draw_block(i, left, y, kQuiet);
+  for (std::size_t i = 1 + choices_ + ends_; i < blocks.size(); y += blocks[i], ++i)
+    draw_block(i, left, y, kQuiet);
 }
 
-float QuestionLayout::slider(std::vector<Rect>& overlay, double number, float left, float y, const std::vector<float>& blocks,
-                             const DrawBlock& draw_block) const {
+float QuestionLayout::slider(std::vector<Rect>& overlay, double number, float left, float y,
+                             const std::vector<float>& blocks, const DrawBlock& draw_block) const {
   const auto share = static_cast<float>((number - m_.lowest) / (m_.highest - m_.lowest));
   const float knob = 6 * size_, track = inner_ - knob, at = left + knob / 2 + track * share;
   const std::string value = number_text(number, m_.step);

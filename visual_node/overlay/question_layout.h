@@ -33,8 +33,8 @@ class QuestionLayout {
   // Height of the plate, when the blocks have these heights. All lengths in pixels.
   float height(const std::vector<float>& blocks) const;
   // mirrored: the keys of the choices are at the right, for writing from right to left.
-  void draw(std::vector<Rect>& overlay, double number, float x, float y, const std::vector<float>& blocks, bool mirrored,
-            const DrawBlock& draw_block) const;
+  void draw(std::vector<Rect>& overlay, double number, float x, float y, const std::vector<float>& blocks,
+            bool mirrored, const DrawBlock& draw_block) const;
 
  private:
   float line(float size) const;
@@ -48,8 +48,8 @@ class QuestionLayout {
   std::size_t choices_ = 0, ends_ = 0;  // number of blocks after the question
 };
 
-// A size of letters to try, with the height of the plate that it may have: large letters in two thirds of the room first. The last try must
-// be used, even if its plate is higher.
+// A size of letters to try, with the height of the plate that it may have: large letters in two thirds of the room
+// first. The last try must be used, even if its plate is higher.
 struct LetterSize {
   float size, leading, height, margin;
 };

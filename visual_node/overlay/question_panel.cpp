@@ -33,7 +33,8 @@ struct WrappedBlocks {
   void draw(std::vector<Rect>& overlay, std::size_t block, float x, float y, const Eigen::Vector3f& colour) const {
     const QuestionBlock& b = layout_.blocks()[block];
     for (const std::string& text : lines[block]) {
-      append_letters(overlay, text, b.edge == TextEdge::kRight ? x + b.width - width_of(text.size(), b.size) : x, y, b.size, colour);
+      append_letters(overlay, text, b.edge == TextEdge::kRight ? x + b.width - width_of(text.size(), b.size) : x,
+                     y, b.size, colour);
       y += step(b.size);
     }
   }
@@ -82,7 +83,9 @@ void append_question(std::vector<Rect>& overlay, const question_t& m, double num
     if (last) texts.fit(t.height);
     const Eigen::Vector2f at = plate_corner(room, layout.height(texts.heights), t.margin);
     layout.draw(overlay, number, at.x(), at.y(), texts.heights, false,
-                [&](std::size_t block, float x, float y, const Eigen::Vector3f& colour) { texts.draw(overlay, block, x, y, colour); });
+                [&](std::size_t block, float x, float y, const Eigen::Vector3f& colour) {
+                  texts.draw(overlay, block, x, y, colour);
+                });
     return;
   }
 }

@@ -1,5 +1,5 @@
-// Draws a question in ASCII: a dark plate in the lower part of the picture with its text, and its choices or a slider, in letters of rectangles.
-// question_text.h draws questions in other characters. Pure.
+// Draws a question in ASCII: a dark plate in the lower part of the picture with its text, and its choices or a
+// slider, in letters of rectangles. question_text.h draws questions in other characters. Pure.
 #pragma once
 
 #include <string>

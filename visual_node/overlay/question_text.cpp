@@ -10,7 +10,8 @@
 namespace tactus::visual {
 namespace {
 
-// The capitals of common fonts are 0.72 em high (DejaVu Sans, Noto Sans), those of the letters of rectangles 7 of their pixels.
+// The capitals of common fonts are 0.72 em high (DejaVu Sans, Noto Sans), those of the letters of rectangles 7 of
+// their pixels.
 constexpr float kEm = kGlyphHeight / 0.72f;
 constexpr const char* kRemedy = "; install a font that does, for example with scripts/setup fonts";
 
@@ -22,7 +23,8 @@ TextRequest request_of(const QuestionLayout& layout, bool measure) {
   TextRequest request{{}, measure};
   for (const QuestionBlock& b : layout.blocks()) {
     const auto size = static_cast<int>(std::lround(b.size * kEm)), width = static_cast<int>(b.width);
-    request.blocks.push_back({b.text, std::clamp(size, kMinSize_px, kMaxSize_px), std::clamp(width, 1, kMaxTextWidth_px), b.edge});
+    request.blocks.push_back(
+        {b.text, std::clamp(size, kMinSize_px, kMaxSize_px), std::clamp(width, 1, kMaxTextWidth_px), b.edge});
   }
   return request;
 }
@@ -70,8 +72,8 @@ QuestionText typeset_question(const question_t& m, const TextArea& room, const D
   return text;
 }
 
-void append_question(std::vector<Rect>& overlay, std::vector<Label>& labels, const question_t& m, double number, const TextArea& room,
-                     const QuestionText& text) {
+void append_question(std::vector<Rect>& overlay, std::vector<Label>& labels, const question_t& m, double number,
+                     const TextArea& room, const QuestionText& text) {
   const QuestionLayout layout(m, plate_width(room), text.size.size, text.size.leading);
   const std::vector<float> heights = heights_of(layout, text.blocks, text.size.leading);
   if (heights.size() != layout.blocks().size()) return;
@@ -80,7 +82,8 @@ void append_question(std::vector<Rect>& overlay, std::vector<Label>& labels, con
               [&](std::size_t block, float x, float y, const Eigen::Vector3f& colour) {
                 const DrawnBlock& drawn = text.blocks[block];
                 // Whole pixels: the text picture is drawn as it is.
-                labels.push_back({text.picture, drawn.first_row, drawn.rows, std::floor(x), std::floor(y), colour.x(), colour.y(), colour.z()});
+                labels.push_back({text.picture, drawn.first_row, drawn.rows, std::floor(x), std::floor(y),
+                                  colour.x(), colour.y(), colour.z()});
               });
 }
 
@@ -106,10 +109,13 @@ const QuestionText* QuestionTexts::find(const question_t& m, const TextArea& roo
   // The second round finds what was typeset at once.
   for (int round = 0; round < 2; ++round) {
     take_done();
-    const auto known = std::find_if(done_.begin(), done_.end(), [&](const Done& d) { return d.width == width && d.height == height; });
+    const auto known = std::find_if(done_.begin(), done_.end(),
+                                    [&](const Done& d) { return d.width == width && d.height == height; });
     if (known != done_.end()) return &known->text;
     if (work_ || done_.size() >= kMaxRooms) return nullptr;
-    const auto typeset = [m, room, make = make_] { return std::make_unique<QuestionText>(typeset_question(m, room, make())); };
+    const auto typeset = [m, room, make = make_] {
+      return std::make_unique<QuestionText>(typeset_question(m, room, make()));
+    };
     if (at_once_)
       done_.push_back({width, height, std::move(*typeset())});
     else

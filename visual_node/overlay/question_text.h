@@ -1,4 +1,5 @@
-// A question in characters beyond ASCII: its texts are typeset once for each size of room, in a thread of its own, and drawn as labels.
+// A question in characters beyond ASCII: its texts are typeset once for each size of room, in a thread of its own,
+// and drawn as labels.
 #pragma once
 
 #include <functional>
@@ -23,22 +24,25 @@ struct QuestionText {
   std::string problem;  // why it cannot be drawn, in one sentence of ASCII; empty: it can
 };
 
-// Draws text: draw_text in a process of its own, or a substitute in tests. Throws std::runtime_error with one clause.
+// Draws text: draw_text in a process of its own, or a substitute in tests. Throws std::runtime_error with one
+// clause.
 using DrawText = std::function<DrawnText(const TextRequest&)>;
 
-// Typesets with the largest letters that fit, as append_question() of question_panel.h. Not for the loop of a node.
+// Typesets with the largest letters that fit, as append_question() of question_panel.h. Not for the loop of a
+// node.
 QuestionText typeset_question(const question_t& m, const TextArea& room, const DrawText& draw);
 
 // Draws it with its mark at `number`. text: without a problem, and for a room of this size.
-void append_question(std::vector<Rect>& overlay, std::vector<Label>& labels, const question_t& m, double number, const TextArea& room,
-                     const QuestionText& text);
+void append_question(std::vector<Rect>& overlay, std::vector<Label>& labels, const question_t& m, double number,
+                     const TextArea& room, const QuestionText& text);
 
 // The typeset texts of the current question. Realtime-safe: find() does not wait, unless it works at once.
 class QuestionTexts {
  public:
   static constexpr std::size_t kMaxRooms = 4;  // design: the parts of a stereo picture have one or two sizes
 
-  // at_once: find() typesets and waits, for a log. make: the source of drawn text, called in the thread that draws.
+  // at_once: find() typesets and waits, for a log. make: the source of drawn text, called in the thread that
+  // draws.
   explicit QuestionTexts(bool at_once, std::function<DrawText()> make = {});
 
   // Null while it is being typeset, and when there are more than kMaxRooms sizes.

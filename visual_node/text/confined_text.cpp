@@ -4,7 +4,8 @@
 
 namespace tactus::visual {
 
-ConfinedText::ConfinedText() : session_("draw_text", {}, {.max_bytes = kMaxTextPixels + (std::size_t{1} << 20), .timeout = kTimeout}) {}
+ConfinedText::ConfinedText()
+    : session_("draw_text", {}, {.max_bytes = kMaxTextPixels + (std::size_t{1} << 20), .timeout = kTimeout}) {}
 
 DrawnText ConfinedText::draw(const TextRequest& request) {
   DrawnText text = unpack_drawn_text(session_.request(pack(request)));

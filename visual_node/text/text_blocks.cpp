@@ -70,13 +70,16 @@ DrawnText unpack_drawn_text(std::span<const std::uint8_t> bytes) {
   text.picture.width = in.get<std::int32_t>(), text.picture.height = in.get<std::int32_t>();
   text.picture.coverage = in.get_list<std::vector<std::uint8_t>>();
   require(within(text.picture.width, 0, kMaxTextWidth_px) && within(text.picture.height, 0, kMaxTextRows) &&
-              text.picture.coverage.size() == static_cast<std::size_t>(text.picture.width) * static_cast<std::size_t>(text.picture.height),
+              text.picture.coverage.size() ==
+                  static_cast<std::size_t>(text.picture.width) * static_cast<std::size_t>(text.picture.height),
           kWrong);
   text.blocks.resize(in.get_count(13));
   for (DrawnBlock& b : text.blocks) {
     b.first_row = in.get<std::int32_t>(), b.rows = in.get<std::int32_t>(), b.line_rows = in.get<std::int32_t>();
     b.right_to_left = in.get<std::uint8_t>() != 0;
-    require(within(b.first_row, 0, kMaxTextRows) && within(b.rows, 0, kMaxTextRows - b.first_row) && within(b.line_rows, 0, b.rows), kWrong);
+    require(within(b.first_row, 0, kMaxTextRows) && within(b.rows, 0, kMaxTextRows - b.first_row) &&
+                within(b.line_rows, 0, b.rows),
+            kWrong);
   }
   text.missing = in.get_list<std::vector<char32_t>>();
   require(in.at_end(), kWrong);
@@ -91,7 +94,8 @@ std::string names_of(const std::vector<char32_t>& characters, std::size_t most) 
     std::snprintf(name, sizeof name, "U+%04X", static_cast<unsigned>(characters[i]));
     names += (i == 0 ? "" : i + 1 == characters.size() ? " and " : ", ") + std::string(name);
   }
-  if (shown < characters.size()) names += " and " + std::to_string(characters.size() - shown) + " other characters";
+  if (shown < characters.size())
+    names += " and " + std::to_string(characters.size() - shown) + " other characters";
   return names;
 }
 

@@ -20,7 +20,8 @@ namespace {
 
 const std::string kYes = "\xd0\xb4\xd0\xb0", kAsk = "\xd0\x92\xd0\xbc\xd0\xb5\xd1\x81\xd1\x82\xd0\xb5?";
 
-// Every byte is half an em wide and a line 5/4 em high; Arabic and Hebrew lead bytes are written from right to left.
+// Every byte is half an em wide and a line 5/4 em high; Arabic and Hebrew lead bytes are written from right to
+// left.
 DrawnText substitute(const TextRequest& request) {
   DrawnText text;
   int rows = 0, width = 0;
@@ -31,12 +32,15 @@ DrawnText substitute(const TextRequest& request) {
     text.blocks.push_back({request.measure ? 0 : rows, lines * line, lines ? line : 0, mirrored});
     rows += lines * line, width = std::max(width, b.width_px);
   }
-  if (!request.measure) text.picture = {width, rows, std::vector<std::uint8_t>(static_cast<std::size_t>(width * rows), 255)};
+  if (!request.measure)
+    text.picture = {width, rows, std::vector<std::uint8_t>(static_cast<std::size_t>(width * rows), 255)};
   return text;
 }
 
 question_t asked(int kind = question_t::CHOICE) {
-  question_t m = kind == question_t::NUMBER ? number(2, 0, 100, 1) : kind == question_t::CHOICE ? choice(1, {kYes, "no"}) : question(3, kind);
+  question_t m = kind == question_t::NUMBER   ? number(2, 0, 100, 1)
+                 : kind == question_t::CHOICE ? choice(1, {kYes, "no"})
+                                              : question(3, kind);
   m.text = kAsk, m.progress = "1/4";
   if (kind == question_t::NUMBER) m.count = 2, m.choices = {kYes, "no"};
   return m;
@@ -54,7 +58,8 @@ TEST_CASE("A question with any character beyond ASCII is typeset") {
 
 TEST_CASE("Typeset texts lie on the plate, in their order, with the largest letters that fit") {
   for (const int kind : {question_t::READ, question_t::CHOICE, question_t::NUMBER})
-    for (const TextArea& room : {TextArea{0, 0, 640, 432}, TextArea{0, 0, 1920, 1032}, TextArea{320, 0, 640, 192}}) {
+    for (const TextArea& room :
+         {TextArea{0, 0, 640, 432}, TextArea{0, 0, 1920, 1032}, TextArea{320, 0, 640, 192}}) {
       const question_t m = asked(kind);
       const QuestionText text = typeset_question(m, room, substitute);
       REQUIRE(text.problem.empty());
@@ -67,9 +72,11 @@ TEST_CASE("Typeset texts lie on the plate, in their order, with the largest lett
       float last = plate.y;
       for (std::size_t i = 0; i < labels.size(); ++i) {
         const Label& l = labels[i];
-        CHECK((l.text == text.picture && l.first_row == text.blocks[i].first_row && l.rows == text.blocks[i].rows));
+        CHECK(
+            (l.text == text.picture && l.first_row == text.blocks[i].first_row && l.rows == text.blocks[i].rows));
         CHECK((l.x == std::floor(l.x) && l.y == std::floor(l.y)));
-        CHECK((l.x >= plate.x && l.y >= plate.y && l.y + static_cast<float>(l.rows) <= plate.y + plate.height + 1));
+        CHECK(
+            (l.x >= plate.x && l.y >= plate.y && l.y + static_cast<float>(l.rows) <= plate.y + plate.height + 1));
         const bool beside = kind == question_t::NUMBER && i == 2;  // the other end of the scale
         CHECK(l.y >= last - static_cast<float>(beside ? text.blocks[1].rows : 0) - 1);
         last = l.y + static_cast<float>(l.rows);
@@ -115,9 +122,12 @@ TEST_CASE("A question that cannot be drawn has a sentence in place of its texts"
     text.missing = {U'\u0905'};
     return text;
   });
-  CHECK(uncovered.problem == "no installed font covers U+0905 of the question; install a font that does, for example with scripts/setup fonts");
-  const QuestionText failed =
-      typeset_question(asked(), {0, 0, 640, 432}, [](const TextRequest&) -> DrawnText { throw std::runtime_error("the program draw_text is missing; build it"); });
+  CHECK(uncovered.problem ==
+        "no installed font covers U+0905 of the question; install a font that does, for example with "
+        "scripts/setup fonts");
+  const QuestionText failed = typeset_question(asked(), {0, 0, 640, 432}, [](const TextRequest&) -> DrawnText {
+    throw std::runtime_error("the program draw_text is missing; build it");
+  });
   CHECK(failed.problem == "the question cannot be drawn: the program draw_text is missing; build it");
 }
 

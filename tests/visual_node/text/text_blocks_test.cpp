@@ -19,17 +19,21 @@ DrawnText two_blocks() {
 }  // namespace
 
 TEST_CASE("A request and an answer of draw_text are read as they were written") {
-  const TextRequest request{{{"\xd0\xb4\xd0\xb0", 20, 300, TextEdge::kRight}, {"", 6, 1, TextEdge::kNatural}}, true};
+  const TextRequest request{{{"\xd0\xb4\xd0\xb0", 20, 300, TextEdge::kRight}, {"", 6, 1, TextEdge::kNatural}},
+                            true};
   const TextRequest read = unpack_text_request(pack(request));
   REQUIRE(read.blocks.size() == 2);
   CHECK((read.measure && read.blocks[0].text == request.blocks[0].text && read.blocks[0].size_px == 20));
-  CHECK((read.blocks[0].width_px == 300 && read.blocks[0].edge == TextEdge::kRight && read.blocks[1].text.empty()));
+  CHECK(
+      (read.blocks[0].width_px == 300 && read.blocks[0].edge == TextEdge::kRight && read.blocks[1].text.empty()));
   DrawnText text = two_blocks();
   text.missing = {U'\u0905'};
   const DrawnText drawn = unpack_drawn_text(pack(text));
-  CHECK((drawn.picture.width == 3 && drawn.picture.height == 5 && drawn.picture.coverage == text.picture.coverage));
+  CHECK(
+      (drawn.picture.width == 3 && drawn.picture.height == 5 && drawn.picture.coverage == text.picture.coverage));
   REQUIRE(drawn.blocks.size() == 2);
-  CHECK((drawn.blocks[1].first_row == 2 && drawn.blocks[1].rows == 3 && drawn.blocks[1].line_rows == 1 && drawn.blocks[1].right_to_left));
+  CHECK((drawn.blocks[1].first_row == 2 && drawn.blocks[1].rows == 3 && drawn.blocks[1].line_rows == 1 &&
+         drawn.blocks[1].right_to_left));
   CHECK(drawn.missing == text.missing);
 }
 

@@ -1,4 +1,5 @@
-// Tests of typeset text with the installed fonts (scripts/setup fonts), in this process and through the confined program.
+// Tests of typeset text with the installed fonts (scripts/setup fonts), in this process and through the confined
+// program.
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,30 +25,36 @@ struct Sample {
   bool right_to_left;
 };
 // "Did they come together?" in the scripts that the group of fonts must cover.
-const std::array<Sample, 7> kSamples{{{"Latin", "Kamen sie zusammen? \xc3\x84\xc3\xb6\xc3\xbc\xc3\x9f", false},
-                                      {"Greek", "\u0389\u03c1\u03b8\u03b1\u03bd \u03bc\u03b1\u03b6\u03af;", false},
-                                      {"Cyrillic", "\u041e\u043d\u0438 \u043f\u0440\u0438\u0448\u043b\u0438 \u0432\u043c\u0435\u0441\u0442\u0435?", false},
-                                      {"Chinese", "\u5b83\u4eec\u662f\u540c\u65f6\u5230\u6765\u7684\u5417\uff1f", false},
-                                      {"Arabic", "\u0647\u0644 \u062c\u0627\u0621\u0627 \u0645\u0639\u064b\u0627\u061f", true},
-                                      {"Devanagari", "\u0915\u094d\u092f\u093e \u0935\u0947 \u090f\u0915 \u0938\u093e\u0925 \u0906\u090f?", false},
-                                      {"Hebrew", "\u05d4\u05d0\u05dd \u05d4\u05dd \u05d1\u05d0\u05d5 \u05d9\u05d7\u05d3?", true}}};
+const std::array<Sample, 7> kSamples{
+    {{"Latin", "Kamen sie zusammen? \xc3\x84\xc3\xb6\xc3\xbc\xc3\x9f", false},
+     {"Greek", "\u0389\u03c1\u03b8\u03b1\u03bd \u03bc\u03b1\u03b6\u03af;", false},
+     {"Cyrillic", "\u041e\u043d\u0438 \u043f\u0440\u0438\u0448\u043b\u0438 \u0432\u043c\u0435\u0441\u0442\u0435?",
+      false},
+     {"Chinese", "\u5b83\u4eec\u662f\u540c\u65f6\u5230\u6765\u7684\u5417\uff1f", false},
+     {"Arabic", "\u0647\u0644 \u062c\u0627\u0621\u0627 \u0645\u0639\u064b\u0627\u061f", true},
+     {"Devanagari", "\u0915\u094d\u092f\u093e \u0935\u0947 \u090f\u0915 \u0938\u093e\u0925 \u0906\u090f?", false},
+     {"Hebrew", "\u05d4\u05d0\u05dd \u05d4\u05dd \u05d1\u05d0\u05d5 \u05d9\u05d7\u05d3?", true}}};
 // Of Cypro-Minoan (Unicode 14), which the fonts of Debian 12 and 13 lack, and of private use.
 const std::string kUncovered = "\U00012f90\U0010fffd";
 
-TextBlock block(const std::string& text, int size_px = 32, int width_px = 1000) { return {text, size_px, width_px, TextEdge::kNatural}; }
+TextBlock block(const std::string& text, int size_px = 32, int width_px = 1000) {
+  return {text, size_px, width_px, TextEdge::kNatural};
+}
 
 // Sum of the coverage of columns [from, to) of a block.
 long ink(const DrawnText& text, std::size_t block, int from, int to) {
   long sum = 0;
   for (int row = text.blocks[block].first_row; row < text.blocks[block].first_row + text.blocks[block].rows; ++row)
-    for (int column = from; column < to; ++column) sum += text.picture.coverage[static_cast<std::size_t>(row * text.picture.width + column)];
+    for (int column = from; column < to; ++column)
+      sum += text.picture.coverage[static_cast<std::size_t>(row * text.picture.width + column)];
   return sum;
 }
 
 // The clusters of a text from left to right, by their first bytes.
 std::vector<std::size_t> order(Typesetter& typesetter, const std::string& text) {
   std::vector<TextCluster> found = typesetter.clusters(block(text));
-  std::stable_sort(found.begin(), found.end(), [](const TextCluster& a, const TextCluster& b) { return a.x_px < b.x_px; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const TextCluster& a, const TextCluster& b) { return a.x_px < b.x_px; });
   std::vector<std::size_t> bytes;
   for (const TextCluster& c : found) bytes.push_back(c.first_byte);
   return bytes;
@@ -103,13 +110,16 @@ TEST_CASE("Arabic and Hebrew run from right to left, with words and numbers of o
 
 TEST_CASE("A letter and its combining marks are one cluster") {
   Typesetter typesetter;
-  for (const std::string& text : {std::string("e\u0301"), std::string("\u0436\u0301"), std::string("\u0915\u093f"), std::string("\u0628\u064b"), std::string("a\u0323\u0302")}) {
+  for (const std::string& text : {std::string("e\u0301"), std::string("\u0436\u0301"), std::string("\u0915\u093f"),
+                                  std::string("\u0628\u064b"), std::string("a\u0323\u0302")}) {
     CAPTURE(text);
     CHECK(typesetter.clusters(block(text)).size() == 1);
     CHECK(typesetter.clusters(block(text + text)).size() == 2);
   }
   // Composed and decomposed letters look the same.
-  const auto drawn = [&](const std::string& text) { return typesetter.draw({{block(text)}, false}).picture.coverage; };
+  const auto drawn = [&](const std::string& text) {
+    return typesetter.draw({{block(text)}, false}).picture.coverage;
+  };
   CHECK(drawn("\u00e9") == drawn("e\u0301"));
   // A joined pair of consonants is narrower than the two.
   const auto width = [&](const std::string& text) {
@@ -150,7 +160,8 @@ TEST_CASE("A hostile text is drawn within its rows, or refused with one clause")
   REQUIRE(text.missing.empty());
   CHECK(text.blocks[0].rows <= 6 * 32);
   for (const char* wrong : {"\xff", "a\xe0\xa4", "\x1b[2J", "a\nb"}) {
-    CHECK_THROWS_WITH(typesetter.draw({{block(wrong)}, false}), Catch::Contains("not UTF-8, or has a control character"));
+    CHECK_THROWS_WITH(typesetter.draw({{block(wrong)}, false}),
+                      Catch::Contains("not UTF-8, or has a control character"));
     CHECK_THROWS_AS(ConfinedText().draw({{block(wrong)}, false}), std::runtime_error);
   }
   const TextRequest large{{block(std::string(2000, 'W'), 400, 400)}, false};

@@ -1,5 +1,6 @@
-// draw_text: draws text of any language in a confined process, for visual_node. Not for users: input and output are records
-// (sync/sandbox/records.h). With --check it names the characters of its standard input that no installed font covers.
+// draw_text: draws text of any language in a confined process, for visual_node. Not for users: input and output
+// are records (sync/sandbox/records.h). With --check it names the characters of its standard input that no
+// installed font covers.
 #include <fontconfig/fontconfig.h>
 #include <unistd.h>
 
@@ -22,7 +23,8 @@ using namespace tactus;
 constexpr char kHelp[] =
     "Usage: draw_text [--check]\n\n"
     "Draws text of any language for visual_node, confined in a process of its own. Input and output are binary.\n"
-    "  --check  read a text in UTF-8 from standard input, and print each of its characters that no installed font covers, as\n"
+    "  --check  read a text in UTF-8 from standard input, and print each of its characters that no installed font "
+    "covers, as\n"
     "           U+HEX, one a line\n"
     "  --help   print this text\n";
 
@@ -30,10 +32,12 @@ constexpr std::size_t kMaxInputBytes = std::size_t{1} << 20;
 
 // The folders of fonts, of their settings and of their caches.
 std::vector<std::filesystem::path> font_folders() {
-  std::vector<std::filesystem::path> folders{"/usr/share", "/usr/local/share", "/etc/fonts", "/var/cache/fontconfig"};
+  std::vector<std::filesystem::path> folders{"/usr/share", "/usr/local/share", "/etc/fonts",
+                                             "/var/cache/fontconfig"};
   FcInit();
   FcStrList* const all = FcConfigGetFontDirs(nullptr);
-  while (const FcChar8* folder = all ? FcStrListNext(all) : nullptr) folders.emplace_back(reinterpret_cast<const char*>(folder));
+  while (const FcChar8* folder = all ? FcStrListNext(all) : nullptr)
+    folders.emplace_back(reinterpret_cast<const char*>(folder));
   if (all) FcStrListDone(all);
   return folders;
 }
@@ -46,10 +50,12 @@ int check() {
   std::vector<char32_t> missing;
   while (!rest.empty()) {
     std::string_view piece = first_bytes(rest.substr(0, rest.find('\n')), visual::kMaxTextBytes);
-    const visual::TextRequest request{{{std::string(piece), 32, visual::kMaxTextWidth_px, visual::TextEdge::kNatural}}, true};
+    const visual::TextRequest request{
+        {{std::string(piece), 32, visual::kMaxTextWidth_px, visual::TextEdge::kNatural}}, true};
     for (const char32_t c : typesetter.draw(request).missing)
       if (std::find(missing.begin(), missing.end(), c) == missing.end()) missing.push_back(c);
-    rest.remove_prefix(std::min(rest.size(), piece.size() + (rest.size() > piece.size() && rest[piece.size()] == '\n')));
+    rest.remove_prefix(
+        std::min(rest.size(), piece.size() + (rest.size() > piece.size() && rest[piece.size()] == '\n')));
   }
   for (const char32_t c : missing) std::printf("U+%04X\n", static_cast<unsigned>(c));
   return 0;

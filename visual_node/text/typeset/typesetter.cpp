@@ -26,7 +26,8 @@ using Iter = std::unique_ptr<PangoLayoutIter, FreeIter>;
 
 // The direction of its only paragraph.
 bool right_to_left(PangoLayout* layout) {
-  return pango_layout_line_get_resolved_direction(pango_layout_get_line_readonly(layout, 0)) == PANGO_DIRECTION_RTL;
+  return pango_layout_line_get_resolved_direction(pango_layout_get_line_readonly(layout, 0)) ==
+         PANGO_DIRECTION_RTL;
 }
 
 // PANGO_ALIGN_LEFT means the edge at which a paragraph begins (pango_layout_set_auto_dir).
@@ -56,7 +57,8 @@ void add_missing(std::vector<char32_t>& missing, PangoLayout* layout) {
   do {
     const PangoLayoutRun* const run = pango_layout_iter_get_run_readonly(iter.get());
     if (!run) continue;
-    if (run->item->analysis.font && is_coloured(run->item->analysis.font)) add_all(missing, text + run->item->offset, run->item->length);
+    if (run->item->analysis.font && is_coloured(run->item->analysis.font))
+      add_all(missing, text + run->item->offset, run->item->length);
     for (int i = 0; i < run->glyphs->num_glyphs; ++i) {
       const PangoGlyph glyph = run->glyphs->glyphs[i].glyph;
       if (glyph != PANGO_GLYPH_EMPTY && glyph & PANGO_GLYPH_UNKNOWN_FLAG)
@@ -145,9 +147,11 @@ DrawnText Typesetter::draw(const TextRequest& request) {
     for (const Placed& placed : all) text.blocks.push_back(placed.block);
     return text;
   }
-  const bool large = rows > kMaxTextRows || static_cast<std::size_t>(rows) * static_cast<std::size_t>(width) > kMaxTextPixels;
+  const bool large =
+      rows > kMaxTextRows || static_cast<std::size_t>(rows) * static_cast<std::size_t>(width) > kMaxTextPixels;
   if (large) throw std::runtime_error("it is larger than a picture: shorten it");
-  text.picture = {width, static_cast<int>(rows), std::vector<std::uint8_t>(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))};
+  text.picture = {width, static_cast<int>(rows),
+                  std::vector<std::uint8_t>(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width))};
   int first_row = 0;
   for (Placed& placed : all) {
     placed.block.first_row = first_row;
@@ -176,14 +180,16 @@ std::vector<TextCluster> Typesetter::clusters(const TextBlock& block) {
   int line = 0;
   const PangoLayoutLine* current = pango_layout_iter_get_line_readonly(iter.get());
   do {
-    if (const PangoLayoutLine* now = pango_layout_iter_get_line_readonly(iter.get()); now != current) current = now, ++line;
+    if (const PangoLayoutLine* now = pango_layout_iter_get_line_readonly(iter.get()); now != current)
+      current = now, ++line;
     if (!pango_layout_iter_get_run_readonly(iter.get())) continue;  // the end of a line
     PangoRectangle logical;
     pango_layout_iter_get_cluster_extents(iter.get(), nullptr, &logical);
     const std::size_t begin = begins[static_cast<std::size_t>(pango_layout_iter_get_index(iter.get()))];
     const int x = PANGO_PIXELS(logical.x), width = PANGO_PIXELS(logical.width);
     // A mark may be a glyph of its own, before or after its letter.
-    const auto known = std::find_if(found.begin(), found.end(), [&](const TextCluster& c) { return c.first_byte == begin; });
+    const auto known =
+        std::find_if(found.begin(), found.end(), [&](const TextCluster& c) { return c.first_byte == begin; });
     if (known == found.end())
       found.push_back({begin, x, width, line});
     else

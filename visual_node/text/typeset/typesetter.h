@@ -1,4 +1,5 @@
-// Typesets paragraphs of any language with Pango: order of writing, joined letters, marks, fonts for each script, line breaks.
+// Typesets paragraphs of any language with Pango: order of writing, joined letters, marks, fonts for each script,
+// line breaks.
 #pragma once
 
 #include <memory>
