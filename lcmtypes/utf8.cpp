@@ -55,8 +55,8 @@ std::string_view first_characters(std::string_view text, std::size_t count) {
 std::string_view first_bytes(std::string_view text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   // A character is at most four bytes long, so it begins at most three before the cut.
-  for (std::size_t cut = bytes; cut + 4 > bytes && cut > 0; --cut)
-    if ((static_cast<unsigned char>(text[cut]) & 0xc0) != 0x80) return text.substr(0, cut);
+  for (std::size_t back = 0; back < 4 && back <= bytes; ++back)
+    if ((static_cast<unsigned char>(text[bytes - back]) & 0xc0) != 0x80) return text.substr(0, bytes - back);
   return text.substr(0, bytes);  // no UTF-8
 }
 
