@@ -10,6 +10,7 @@
 #include <tactus/tag_values_t.hpp>
 
 #include "lcmtypes/plausible.h"
+#include "lcmtypes/utf8.h"
 #include "lcmtypes/valid.h"
 
 namespace tactus {
@@ -44,10 +45,10 @@ bool valid(const tag_values_t& m) {
 }
 
 bool valid(const question_t& m) {
-  const auto choice = [](const std::string& c) { return !c.empty() && c.size() <= 40 && printable(c); };
-  const auto line = [](const std::string& l) { return l.size() <= 64 && printable(l); };
-  if (!sane(m.header) || m.id <= 0 || m.text.size() > 600 || !printable(m.text) || !between(m.count, 0, 9) ||
-      !std::ranges::all_of(m.choices, choice) || m.trial < 0 || !line(m.condition) || !line(m.progress))
+  const auto line = [](const std::string& l, std::size_t most) { return is_text_line(l) && character_count(l) <= most; };
+  const auto choice = [&](const std::string& c) { return !c.empty() && line(c, 40); };
+  if (!sane(m.header) || m.id <= 0 || !line(m.text, 600) || !between(m.count, 0, 9) ||
+      !std::ranges::all_of(m.choices, choice) || m.trial < 0 || !line(m.condition, 64) || !line(m.progress, 64))
     return false;
   const bool no_number = m.lowest == 0 && m.highest == 0 && m.step == 0;
   switch (m.kind) {

@@ -56,7 +56,7 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, RenderOutput& render_output
       recording_(options.recording),
       overlays_(host.bus(), events_.inbox()),
       controls_(host.bus()),
-      questions_(host.bus()) {
+      questions_(host.bus(), log != nullptr) {
   host.node().set_rate(settings().rate_Hz);
   composer_.set_schedule([&endpoint = host.endpoint()](std::int64_t event, sync::HostTime happened) {
     return endpoint.schedule(event, happened);
@@ -221,6 +221,7 @@ void NodeRenderer::draw_overlays(sync::HostTime latched) {
   }
   if (render_output_.draws())
     questions_.append(frame_, latched, render_output_.picture().width(), render_output_.picture().height());
+  if (const auto problem = questions_.take_problem()) host().print_status(*problem);
   render_output_.draw_flashes_and_overlay(frame_.list);
 }
 

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "lcmtypes/channels.h"
+#include "lcmtypes/utf8.h"
 #include "lcmtypes/valid.h"
 #include "sync/random/keyed_random.h"
 
@@ -12,11 +14,16 @@ void Interview::ask(question_t question) {
   question.id = static_cast<std::int64_t>(sync::mixed(seed_, ++count_) >> 2) + 1;
   question_t stamped = question;  // the bus fills the rest of the header
   stamped.header.run_id = stamped.header.incarnation = 1;
+  const std::string shown(first_characters(question.text, 40));
   if (!valid(stamped))
     throw std::invalid_argument(
-        "the question \"" + question.text.substr(0, 40) +
-        "\" cannot be asked: text has at most 600 characters of ASCII, a choice 40, condition and progress 64; "
+        "the question \"" + shown +
+        "\" cannot be asked: text has at most 600 characters of UTF-8 on one line, a choice 40, condition and progress 64; "
         "2 to 9 choices; a number needs lowest < highest and a step > 0");
+  if (const int bytes = stamped.getEncodedSize(); bytes > static_cast<int>(channels::kMaxMessageBytes))
+    throw std::invalid_argument("the question \"" + shown + "\" cannot be asked: it has " + std::to_string(bytes) +
+                                " bytes with its choices, and a message at most " + std::to_string(channels::kMaxMessageBytes) +
+                                "; shorten it");
   question_ = std::move(question);
   open_ = question_.kind != question_t::NOTHING;
   first_.reset(), next_.reset();

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "lcmtypes/utf8.h"
 #include "lcmtypes/vectors.h"
 #include "sim_node/command/properties.h"
 
@@ -110,7 +111,7 @@ void Commander::reply(std::int64_t id, const std::string& error, const std::stri
   sim_reply_t r{};
   r.id = id;
   r.done = error.empty() ? 1 : 0;
-  r.text = (error.empty() ? text : error).substr(0, kMaxText);
+  r.text = first_bytes(error.empty() ? text : error, kMaxText);
   r.paused = paused_ ? 1 : 0;
   past_replies_.push_back(r);
   if (past_replies_.size() > kMaxPastReplies) past_replies_.pop_front();

@@ -12,6 +12,7 @@
 #include <tactus/tag_list_t.hpp>
 #include <tactus/tag_values_t.hpp>
 
+#include "lcmtypes/utf8.h"
 #include "sync/bus/bus_arguments.h"
 #include "sync/degradation/measured_effect.h"
 #include "sync/degradation/profile_exchange.h"
@@ -239,7 +240,7 @@ node_health_t Node::health_message(HostTime now) {
   m.modality = descriptor_.modality;
   m.expected_events = descriptor_.expected_events | (descriptor_.late_rule == LateRule::kAlwaysApply ? node_health_t::OTHERS_DO_NOT_WAIT : 0);
   m.status_text = status_text_.empty() ? scheduling_ : status_text_ + "; " + scheduling_;
-  if (m.status_text.size() > kMaxNote) m.status_text.replace(kMaxNote - 3, std::string::npos, "...");
+  if (m.status_text.size() > kMaxNote) m.status_text = std::string(first_bytes(m.status_text, kMaxNote - 3)) + "...";
   if (!profile_effect_.empty()) m.status_text += std::string(kEffectPrefix) + profile_effect_;
   m.tick = tick_.to_message();
   m.wake = wake_.to_message();

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "lcmtypes/utf8.h"
+
 namespace tactus::sync {
 namespace {
 
@@ -81,7 +83,7 @@ void SettingChanges::process(const setting_change_t& change, const Apply& apply)
   } catch (const std::invalid_argument& e) {
     reply.text = node_ + ": " + e.what();
   }
-  reply.text.resize(std::min<std::size_t>(reply.text.size(), 512));
+  reply.text = std::string(first_bytes(reply.text, 512));
   known_.try_emplace(reply.id, reply);
   replies_.push_back(reply);
 }

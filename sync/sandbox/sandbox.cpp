@@ -97,14 +97,14 @@ Confinement confine_process(const std::vector<std::filesystem::path>& readable, 
   limit(RLIMIT_CPU, static_cast<rlim_t>(limits.processor_s));
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_NPROC, 0);
+  if (!limits.threads) limit(RLIMIT_NPROC, 0);
   limit(RLIMIT_NOFILE, 64);
   Confinement done;
   prctl(PR_SET_DUMPABLE, 0);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   done.files = confine_files(readable);
   done.capabilities = drop_capabilities(done.files);
-  done.system_calls = restrict_system_calls();
+  done.system_calls = restrict_system_calls(limits.threads);
   return done;
 }
 

@@ -13,6 +13,8 @@ struct SandboxLimits {
   // Address space. No limit in a build with sanitizers, whose shadow memory is larger than any limit.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
   int processor_s = 120;
+  // The process may start threads, which are confined as well: the library that it runs works in one.
+  bool threads = false;
 };
 
 // The measures that the kernel accepted.

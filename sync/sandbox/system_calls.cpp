@@ -1,6 +1,7 @@
 #include "sync/sandbox/system_calls.h"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <seccomp.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -34,7 +35,7 @@ struct Release {
 
 }  // namespace
 
-bool restrict_system_calls() {
+bool restrict_system_calls(bool threads) {
   const std::unique_ptr<void, Release> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)));
   if (!filter) return false;
   bool complete = true;
@@ -49,6 +50,11 @@ bool restrict_system_calls() {
   allow_with(SCMP_SYS(mmap), 2, PROT_EXEC, 0);
   allow_with(SCMP_SYS(mprotect), 2, PROT_EXEC, 0);
   allow_with(SCMP_SYS(tgkill), 0, UINT64_MAX, static_cast<std::uint64_t>(getpid()));  // abort()
+  if (threads) {
+    allow_with(SCMP_SYS(clone), 0, CLONE_THREAD, CLONE_THREAD);  // a thread, and no process
+    // The filter cannot read the arguments of clone3; libc uses clone where the kernel lacks it.
+    complete &= seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0;
+  }
   return complete && seccomp_load(filter.get()) == 0;
 }
 

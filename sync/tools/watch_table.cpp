@@ -10,6 +10,7 @@
 #include <tactus/pair_report_t.hpp>
 
 #include "lcmtypes/channels.h"
+#include "lcmtypes/utf8.h"
 #include "sync/degradation/measured_effect.h"
 #include "sync/text/printable.h"
 
@@ -55,7 +56,7 @@ std::string uncertainty(Nanoseconds t) {
 // One line for the terminal, without control characters.
 std::string cut(const std::string& raw, std::size_t width) {
   std::string text = printable(raw);
-  if (text.size() > width) text.resize(width);
+  text = std::string(first_characters(text, width));
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text + "\n";
 }

@@ -34,6 +34,41 @@ TEST_CASE("The largest question fits in one datagram") {
   CHECK(q.getEncodedSize() <= static_cast<int>(channels::kMaxMessageBytes));
 }
 
+TEST_CASE("A question is one line of UTF-8, and its length counts characters") {
+  const std::string ya = "\xd1\x8f", na = "\xe0\xa4\xa8";
+  const auto repeated = [](const std::string& c, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += c;
+    return text;
+  };
+  question_t q = choice();
+  q.text = repeated(na, 600), q.choices = {repeated(ya, 40), na};
+  CHECK(valid(q));
+  q.text += na;
+  CHECK_FALSE(valid(q));
+  for (const char* wrong : {"\xff", "\xe0\xa4", "a\xc2\x85", "\xe2\x80\xa8"}) {
+    for (std::string question_t::*text : {&question_t::text, &question_t::condition, &question_t::progress}) {
+      question_t damaged = choice();
+      damaged.*text = wrong;
+      CHECK_FALSE(valid(damaged));
+    }
+    question_t damaged = choice();
+    damaged.choices[1] = wrong;
+    CHECK_FALSE(valid(damaged));
+  }
+  q = choice();
+  q.choices[0] = repeated(ya, 41);
+  CHECK_FALSE(valid(q));
+}
+
+TEST_CASE("A question without texts has the size that tactus study assumes") {
+  // scripts/python/tactus/study/texts.py: OTHER_BYTES, and TEXT_BYTES for each text.
+  question_t q{};
+  CHECK(q.getEncodedSize() == 8 + 48 + 41 + 3 * 5);
+  q.text = "\xe0\xa4\xa8", q.choices = {"ab", ""}, q.count = 2;
+  CHECK(q.getEncodedSize() == 8 + 48 + 41 + 5 * 5 + 5);
+}
+
 TEST_CASE("A question without a valid answer is rejected") {
   CHECK(valid(choice()));
   CHECK(valid(number()));

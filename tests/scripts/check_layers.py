@@ -30,6 +30,7 @@ QUARANTINE = [
     (r"EGL/|epoxy/egl", r"visual_node/devices/", "EGL is used in visual_node/devices only"),
     (r"(sdf|gz|ignition)/", r"sim_node/scene/", "libsdformat is used in sim_node/scene only"),
     (r"assimp/", r"sim_node/scene/", "assimp is used in sim_node/scene only"),
+    (r"(pango|harfbuzz|fontconfig|ft2build)", r"visual_node/text/typeset/", "Pango and its fonts are used in visual_node/text/typeset only"),
     (r"(portaudio|alsa)", r"audio_node/devices/", "PortAudio and ALSA are used in audio_node/devices only"),
 ]
 MAX_LINES = 400

@@ -5,6 +5,7 @@
 #include <tactus/answer_t.hpp>
 #include <tactus/question_t.hpp>
 
+#include "lcmtypes/utf8.h"
 #include "tests/times.h"
 
 using namespace tactus;
@@ -83,4 +84,22 @@ TEST_CASE("A question without a possible answer is rejected, and the previous qu
   CHECK_THROWS_AS(interview.ask(choice(1)), std::invalid_argument);
   CHECK_THROWS_AS(interview.ask(choice(10)), std::invalid_argument);
   CHECK(interview.question().count == 3);
+}
+
+TEST_CASE("A question in any language is asked, and one that no message can hold is refused with its bytes") {
+  Interview interview(1);
+  question_t q = choice(2);
+  q.text = "\xe0\xa4\x95\xe0\xa5\x8d\xe0\xa4\xaf\xe0\xa4\xbe?", q.choices = {"\xd0\xb4\xd0\xb0", "\xd9\x84\xd8\xa7"};
+  interview.ask(q);
+  CHECK(interview.step(at_ms(0))->text == q.text);
+  for (q.text.clear(); q.text.size() < 1800;) q.text += "\xe0\xa4\xa8";
+  CHECK_THROWS_WITH(interview.ask(q), Catch::Contains("a message at most 1400; shorten it"));
+  // The quoted part ends between two characters, also when the text is too long.
+  q.text += "\xe0\xa4\xa8";
+  try {
+    interview.ask(q);
+    FAIL("asked");
+  } catch (const std::invalid_argument& e) {
+    CHECK(tactus::is_text_line(e.what()));
+  }
 }

@@ -107,6 +107,7 @@ void Renderer::warm_up(DrawList list, const std::function<void()>& meanwhile) {
       {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.strokes.push_back({Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero()});
   list.overlay.emplace_back();
+  list.labels.push_back({.text = std::make_shared<TextPicture>(TextPicture{1, 1, {0}}), .rows = 1});
   const Quality before = quality_;
   const auto draw = [&](const DrawList& picture, const Quality& q) {
     quality_ = q;
@@ -166,6 +167,7 @@ void Renderer::draw_flashes_and_overlay(const DrawList& list) {
   overlay_.set("size",
                Eigen::Vector2f(static_cast<float>(picture_.width()), static_cast<float>(picture_.height())));
   rects_.draw(list.overlay.data(), list.overlay.size());
+  labels_.draw(list.labels, picture_.width(), picture_.height());
   glDisable(GL_BLEND);
 }
 

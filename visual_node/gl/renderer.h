@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "visual_node/gl/buffers.h"
+#include "visual_node/gl/labels.h"
 #include "visual_node/gl/program.h"
 #include "visual_node/gl/screen_passes.h"
 #include "visual_node/gl/surface_programs.h"
@@ -75,6 +76,7 @@ class Renderer {
   std::vector<std::string> warnings_;
   Program shadow_program_{"shadow"}, glow_{"glow"}, overlay_{"overlay"}, upscale_{"upscale"}, sky_program_{"sky"},
       stroke_{"stroke"};
+  Labels labels_;
   std::vector<std::unique_ptr<GeometryBuffer>> geometries_;
   std::vector<std::unique_ptr<ReliefTexture>> reliefs_;
   StreamBuffer instances_, lights_;

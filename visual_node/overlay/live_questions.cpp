@@ -8,8 +8,11 @@
 
 namespace tactus::visual {
 
-LiveQuestions::LiveQuestions(sync::Bus& bus)
-    : bus_(bus), questions_(bus.queue<question_t>(channels::kQuestion, 64)), dialog_(bus.identity().run_id) {}
+LiveQuestions::LiveQuestions(sync::Bus& bus, bool at_once)
+    : bus_(bus),
+      questions_(bus.queue<question_t>(channels::kQuestion, 64)),
+      dialog_(bus.identity().run_id),
+      texts_(at_once) {}
 
 void LiveQuestions::configure(const Settings& settings) {
   enabled_ = settings.questions;
@@ -39,6 +42,23 @@ void LiveQuestions::send() {
   if (auto answer = dialog_.take_answer()) bus_.publish(channels::kAnswer, *answer);
 }
 
+// Returns false when the question is not in the picture: it is being typeset, or cannot be drawn.
+bool LiveQuestions::append(Frame& frame, const question_t& m, const TextArea& room) {
+  if (is_ascii(m)) {
+    append_question(frame.list.overlay, m, dialog_.number(), room);
+    return true;
+  }
+  const QuestionText* text = texts_.find(m, room);
+  if (!text) return false;
+  if (text->problem.empty()) {
+    append_question(frame.list.overlay, frame.list.labels, m, dialog_.number(), room, *text);
+    return true;
+  }
+  append_lines(frame.list.overlay, {text->problem}, room, text_size(static_cast<int>(room.bottom - room.y)));
+  if (text->problem != last_problem_) new_problem_ = last_problem_ = text->problem;
+  return false;
+}
+
 void LiveQuestions::append(Frame& frame, sync::HostTime now, int picture_width, int picture_height) {
   const question_t* m = enabled_ ? dialog_.current(now) : nullptr;
   drawn_ = m != nullptr;
@@ -50,7 +70,7 @@ void LiveQuestions::append(Frame& frame, sync::HostTime now, int picture_width, 
   const auto add = [&](float x, float top, float wide, float high) {
     if (std::find(parts.begin(), parts.end(), std::pair(x, top)) != parts.end()) return;
     parts.emplace_back(x, top);
-    append_question(frame.list.overlay, *m, dialog_.number(), {x, top, x + wide, std::min(top + high, free_to)});
+    drawn_ &= append(frame, *m, {x, top, x + wide, std::min(top + high, free_to)});
   };
   for (const View& v : frame.list.views)
     add(v.x * width, (1 - v.y - v.height) * height, v.width * width, v.height * height);

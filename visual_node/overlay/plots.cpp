@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "lcmtypes/utf8.h"
 #include "sync/text/printable.h"
 #include "visual_node/frame/text.h"
 #include "visual_node/overlay/panel.h"
@@ -109,7 +110,7 @@ void Plots::push(const std::string& channel, std::span<const std::uint8_t> bytes
     if (!read) continue;
     p.at = arrival;
     if (const auto* words = std::get_if<std::string>(&*read)) {
-      p.newest = sync::printable(words->substr(0, kMaxTextLength));
+      p.newest = sync::printable(first_characters(*words, kMaxTextLength));
       continue;
     }
     p.value = std::get<double>(*read);

@@ -1,4 +1,5 @@
-// Draws a question: a dark plate in the lower part of the picture with its text, and its choices or a slider. Pure.
+// Draws a question in ASCII: a dark plate in the lower part of the picture with its text, and its choices or a
+// slider, in letters of rectangles. question_text.h draws questions in other characters. Pure.
 #pragma once
 
 #include <string>
@@ -6,17 +7,16 @@
 #include <tactus/question_t.hpp>
 #include <vector>
 
-#include "visual_node/overlay/panel.h"
-#include "visual_node/scene_view/draw_list.h"
+#include "visual_node/overlay/question_layout.h"
 
 namespace tactus::visual {
+
+// Whether all of its texts are ASCII.
+bool is_ascii(const question_t& m);
 
 // Breaks text into lines at blanks; a word that is longer than a line is broken at the end of the line. letters >
 // 0.
 std::vector<std::string> wrap_text(std::string_view text, std::size_t letters);
-
-// A number with as many decimals as the step of the question has, at most six.
-std::string number_text(double number, double step);
 
 // Draws question m with its mark at `number`. Uses the largest letters that fit into the lower two thirds of
 // `room`, or into all of it when they would be too small to read from a chair.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "visual_node/lens/camera.h"
@@ -79,6 +81,20 @@ struct Rect {
   float red = 0, green = 0, blue = 0, alpha = 1;
 };
 
+// A picture of text without colour.
+struct TextPicture {
+  int width = 0, height = 0;           // pixels
+  std::vector<std::uint8_t> coverage;  // 0 .. 255 a pixel, the highest row first
+};
+
+// Some rows of a text picture over the picture, pixel by pixel, in sRGB.
+struct Label {
+  std::shared_ptr<const TextPicture> text;
+  int first_row = 0, rows = 0;  // of the text picture
+  float x = 0, y = 0;           // whole pixels from the top left
+  float red = 1, green = 1, blue = 1;
+};
+
 struct DrawList {
   Camera camera;            // of the head; used for depth order and the size of flashes
   std::vector<View> views;  // views to draw; empty: the camera's view in the whole picture
@@ -89,6 +105,7 @@ struct DrawList {
   std::vector<Glow> glows;
   std::vector<Stroke> strokes;
   std::vector<Rect> overlay;
+  std::vector<Label> labels;  // drawn over the overlay
 };
 
 }  // namespace tactus::visual

@@ -5,6 +5,7 @@
 #include <tactus/tag_def_t.hpp>
 #include <tactus/tag_values_t.hpp>
 
+#include "lcmtypes/utf8.h"
 #include "sync/text/printable.h"
 
 namespace tactus::sync::spy {
@@ -25,12 +26,12 @@ std::string bytes_text(double per_s) {
 }
 
 std::string padded(std::string text, std::size_t columns) {
-  text.resize(columns, ' ');
-  return text;
+  const std::size_t shown = character_count(text);
+  return shown < columns ? text + std::string(columns - shown, ' ') : std::string(first_characters(text, columns));
 }
 
-// Truncates ASCII text to the width.
-std::string cut(const std::string& text, std::size_t columns) { return text.substr(0, columns); }
+// Truncates text to the width, one column a character.
+std::string cut(const std::string& text, std::size_t columns) { return std::string(first_characters(text, columns)); }
 
 std::string age_text(const ChannelFigures& f) {
   if (f.type.empty()) return "";
@@ -41,7 +42,7 @@ std::string age_text(const ChannelFigures& f) {
 
 std::string text_of(const Leaf& value) {
   if (const auto* text = std::get_if<std::string>(&value))
-    return "\"" + printable(text->substr(0, kLongestValue)) + "\"";
+    return "\"" + printable(first_characters(*text, kLongestValue)) + "\"";
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
   return format("%.6g", std::get<double>(value));
 }

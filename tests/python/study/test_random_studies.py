@@ -13,7 +13,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
 sys.path.insert(0, str(SCRIPTS / "python"))
 from tactus.psychophysics import functions
 from tactus.refusal import Refusal
-from tactus.study import check, quantities, questions, study_file, trial_table
+from tactus.study import check, quantities, questions, study_file, texts, trial_table
 from tactus.study.plan import Plan
 
 STUDIES = 400
@@ -145,7 +145,7 @@ class RandomStudies(unittest.TestCase):
                     xml.fromstring(study.profile(trial.condition, trial.level))
                     if not plan.performs:
                         words = questions.words(study, trial)
-                        self.assertLessEqual(len(words["text"]), study_file.LONGEST_TEXT + 20)
+                        self.assertLessEqual(len(words["text"]), texts.LONGEST_TEXT + 20)
                         self.assertNotIn("{a}", words["text"] if trial.condition.senses else "")
                         questions.meaning(study, trial, {"number": 1.0, "choice": 0})
                     yes = dice.random() < 0.5

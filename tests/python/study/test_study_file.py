@@ -113,8 +113,18 @@ class StudyFile(unittest.TestCase):
         s = self.read(PRESSED.replace(' of="stiffness"', "").replace(PRESSED[PRESSED.index("<observer"):], "</study>"))
         self.assertEqual((s.of, s.question, s.observers), ("", study_file.QUESTIONS["two_interval"][0], {}))
 
-    def test_a_text_that_is_not_ascii_is_refused_with_its_letter(self):
-        self.refused(self.changed("<choice>no</choice>", "<choice>n\u00e4</choice>"), "the text of choice contains '\u00e4'", "ASCII")
+    def test_a_file_that_is_not_utf8_is_refused_with_its_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "s.xml"
+            for data, sentence in ((GOOD.replace("Listen", "H\u00f6re").encode("latin-1"), "s.xml:2: is not UTF-8"), (GOOD.encode("utf-16"), "s.xml:1: is UTF-16"),
+                                   (('<?xml version="1.0" encoding="ISO-8859-1"?>' + GOOD).encode(), "s.xml:1: declares the encoding ISO-8859-1")):
+                path.write_bytes(data)
+                with self.assertRaises(Refusal) as caught:
+                    study_file.read(path)
+                self.assertIn(sentence, str(caught.exception))
+                self.assertIn("save", str(caught.exception))
+            path.write_bytes(('\ufeff<?xml version="1.0" encoding="utf-8"?>' + GOOD).encode())
+            self.assertEqual(study_file.read(path).name, "s")
 
     def test_a_file_that_is_not_xml_is_refused(self):
         for text in ("", "<study", GOOD.replace("</study>", ""), GOOD + "<more/>"):

@@ -7,6 +7,8 @@
 #include <tactus/setting_change_t.hpp>
 #include <tactus/setting_reply_t.hpp>
 
+#include "lcmtypes/utf8.h"
+
 using namespace tactus;
 
 namespace {
@@ -112,4 +114,20 @@ TEST_CASE("A malformed or too long group of settings is refused, and nothing is 
   CHECK_THROWS_AS(sync::pack_settings(c, {{"a,b", "1"}}), std::invalid_argument);
   CHECK_THROWS_AS(sync::pack_settings(c, {{std::string(40, 'a'), "1"}, {std::string(40, 'b'), "1"}}), std::invalid_argument);
   CHECK_THROWS_AS(sync::pack_settings(c, {{"a", std::string(150, '1')}, {"b", std::string(150, '1')}}), std::invalid_argument);
+}
+
+TEST_CASE("A long reply about a text of another language ends between two characters") {
+  for (std::size_t shift = 0; shift < 3; ++shift) {
+    sync::SettingChanges changes("haptic_node", 7);
+    changes.process(change(4), [&](const auto&) {
+      std::string text(shift, 'a');
+      while (text.size() < 600) text += "\xe0\xa4\xa8";
+      throw std::invalid_argument(text);
+    });
+    const auto replies = changes.replies();
+    REQUIRE(replies.size() == 1);
+    CHECK(replies[0].text.size() > 509);
+    CHECK(replies[0].text.size() <= 512);
+    CHECK(is_text_line(replies[0].text));
+  }
 }

@@ -1,6 +1,7 @@
 #include "sync/sandbox/sandbox.h"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
@@ -190,4 +191,34 @@ TEST_CASE("An incomplete result of a reader is rejected before memory is allocat
   std::vector<std::uint8_t> huge(16, 0xff);
   CHECK_THROWS_AS(Unpacker(huge).get_list<std::vector<double>>(), std::runtime_error);
   CHECK_THROWS_AS(Unpacker(huge).get_count(1), std::runtime_error);
+}
+
+TEST_CASE("A confined process starts a thread only where it is allowed, and the thread is confined too") {
+  const TemporaryFolder folder;
+  const std::string inside = folder.path / "a";
+  std::ofstream(inside) << "a";
+  for (const bool allowed : {false, true}) {
+    const std::string done = in_process([&](int out) {
+      confine_process({folder.path}, {.threads = allowed});
+      pthread_t thread;
+      struct Work {
+        const std::string& inside;
+        int out;
+      } work{inside, out};
+      const auto run = [](void* given) -> void* {
+        const Work& w = *static_cast<Work*>(given);
+        std::string found = "t";
+        if (opens(w.inside, O_RDONLY)) found += "r";
+        if (opens("/etc/passwd", O_RDONLY)) found += "p";
+        if (opens(w.inside, O_WRONLY)) found += "w";
+        if (socket(AF_INET, SOCK_DGRAM, 0) >= 0) found += "i";
+        if (write(w.out, found.data(), found.size()) < 0) _exit(1);
+        return nullptr;
+      };
+      if (pthread_create(&thread, nullptr, run, &work) == 0) pthread_join(thread, nullptr);
+      if (fork() >= 0 && write(out, "f", 1) < 0) _exit(1);  // a process is never allowed
+    });
+    const Confinement available = available_confinement();
+    if (available.files && available.system_calls) CHECK(done == (allowed ? "tr" : ""));
+  }
 }

@@ -2,8 +2,23 @@
 // question.
 import { Study, element, make } from "./messages";
 import { QuestionState, Pad, Press, pressOfKey } from "./question";
+import { directionOf, glyphOf, nameOf, uncovered } from "./script";
 
 export const participant = new URLSearchParams(location.search).has("participant");
+
+// An element with a text of the study, in its own direction of writing.
+function says(tag: string, className: string, text: string): HTMLElement {
+  const e = make(tag, className, text);
+  e.dir = "auto";
+  return e;
+}
+
+// One sentence about characters that the browser cannot draw; undefined: it can.
+function problemOf(m: Study): HTMLElement | undefined {
+  const lacking = uncovered([m.text, ...m.choices, m.progress], glyphOf(`20px ${getComputedStyle(document.body).fontFamily}`));
+  return lacking.length === 0 ? undefined
+    : make("p", "bad", `No font of this browser covers ${lacking.slice(0, 4).map(nameOf).join(", ")}${lacking.length > 4 ? " and others" : ""}: install a font that does on this machine, and reload the page.`);
+}
 
 export class StudyPanel {
   private state = new QuestionState();
@@ -48,13 +63,16 @@ export class StudyPanel {
     this.slider = undefined;
     this.box.replaceChildren();
     if (!m) return;
-    this.box.append(make("p", "asked", m.text));
+    const problem = problemOf(m);
+    if (problem) this.box.append(problem);
+    this.box.append(says("p", "asked", m.text));
     const answers = make("div", "answers");
+    answers.dir = directionOf(m.text);  // the keys are where a line begins
     if (m.kind === "choice") m.choices.forEach((c, i) => answers.append(this.button(c, String(i + 1), { choice: i })));
     if (m.kind === "number") this.box.append(this.slide(m));
     if (m.kind === "number") answers.append(this.button("answer", "Enter", { confirms: true }));
     if (m.kind === "read") answers.append(this.button("continue", "Enter", { continues: true }));
-    this.box.append(answers, make("p", "quiet", m.progress));
+    this.box.append(answers, says("p", "quiet", m.progress));
     this.showMark();
     // Measures the time after painting: a message that is posted just before a frame is drawn arrives just after it.
     requestAnimationFrame(() => {
@@ -65,7 +83,7 @@ export class StudyPanel {
   }
   private button(text: string, key: string, press: Press): HTMLElement {
     const button = make("button", "answer");
-    button.append(make("kbd", "", key), make("span", "", text));
+    button.append(make("kbd", "", key), says("span", "", text));
     button.addEventListener("click", (e) => this.press(press, e.timeStamp));
     return button;
   }
@@ -74,7 +92,7 @@ export class StudyPanel {
     Object.assign(input, { type: "range", id: "mark", min: "0", max: String(mark.steps), step: "1" });
     input.addEventListener("input", () => { mark.place = Number(input.value); this.showMark(); });
     const words = m.choices.length === 2 ? m.choices : [mark.text(m.lowest), mark.text(m.highest)];
-    ends.append(...words.map((w) => make("span", "", w)));
+    ends.append(...words.map((w) => says("span", "", w)));
     box.append(make("output", "marked"), input, ends);
     this.slider = input;
     return box;
@@ -99,6 +117,6 @@ export class StudyPanel {
     const status = study.kind === "nothing" ? "" : study.answered ? "answered in a page" : "waits for the participant";
     const offered = study.kind === "number" ? `${study.lowest} to ${study.highest}${study.choices.length ? `: ${study.choices.join(" to ")}` : ""}`
       : study.choices.map((c, i) => `${i + 1} ${c}`).join("   ");
-    this.box.replaceChildren(head, make("p", "facts", facts), make("p", "asked", asked), make("p", "offered quiet", offered), make("p", "quiet", status));
+    this.box.replaceChildren(head, make("p", "facts", facts), says("p", "asked", asked), says("p", "offered quiet", offered), make("p", "quiet", status));
   }
 }

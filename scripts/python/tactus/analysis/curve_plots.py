@@ -112,7 +112,7 @@ def small_multiples(curves):
             line(axes, curve, color=tint)
         else:
             axes.text(0.5, 0.5, "no fit", transform=axes.transAxes, ha="center", color=BREAK)
-        axes.set_title(label_of(curve.participant), fontsize=7.5)
+        axes.set_title(label_of(curve.participant, curves), fontsize=7.5)
         axes.tick_params(labelsize=7)
         axes.set_ylim(-0.03, 1.03)
     for axes in grid.flat[len(people):]:
@@ -182,7 +182,7 @@ def trace_figure(curves):
             name = "pss" if condition.pair else "threshold75"
             axes.axhspan(*np.clip(curve.intervals[name], *finite(levels)), color="#eeeeee", zorder=0)
             axes.plot(*running(curve, levels, yes, name), color=INK, linewidth=1)
-        axes.set_title(label_of(curve.participant), fontsize=7.5)
+        axes.set_title(label_of(curve.participant, curves), fontsize=7.5)
         axes.tick_params(labelsize=7)
     for axes in grid.flat[len(people):]:
         axes.set_visible(False)

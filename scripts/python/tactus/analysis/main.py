@@ -91,7 +91,7 @@ def write(options, analysis, made):
     os.replace(page + ".part", page)
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:
-            json.dump({"trials": len(analysis.trials), "left_out": analysis.left_out, "observer": analysis.observer, **result_tables.for_programs(made)}, file, indent=1)
+            json.dump({"trials": len(analysis.trials), "left_out": analysis.left_out, "observer": analysis.observer, **result_tables.for_programs(made)}, file, indent=1, ensure_ascii=False)
             file.write("\n")
     print_summary(analysis, made, page, report)
 

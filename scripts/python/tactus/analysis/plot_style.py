@@ -1,6 +1,9 @@
 """Common style of the figures of a study: colours, mark of simulated observers, and published thresholds behind the data."""
 
+import unicodedata
+
 from tactus.report import figures
+from matplotlib import font_manager
 
 figures.matplotlib.rcParams["text.parse_math"] = False  # shows names literally
 
@@ -40,5 +43,26 @@ def thresholds_behind(axes, found, legend=True):
     return len(found) - len(shown)
 
 
-def label_of(participant):
-    return participant or "all together"
+def is_drawn(text):
+    """Whether matplotlib draws a text as it is written: its font has every character, none joins another, and it runs from left to right."""
+    font = font_manager.get_font(font_manager.findfont("DejaVu Sans"))
+    return all(font.get_char_index(ord(c)) and unicodedata.category(c)[0] not in "MC" and unicodedata.bidirectional(c) not in ("R", "AL", "AN") for c in text)
+
+
+def number_of(participant, curves):
+    """Number of a participant among these curves, from 1."""
+    return 1 + [c.participant for c in curves if c.participant].index(participant)
+
+
+def label_of(participant, curves):
+    """Title of a participant in a figure: the name, or its number in the table when the figure cannot show the name."""
+    if not participant:
+        return "all together"
+    return participant if is_drawn(participant) else f"participant {number_of(participant, curves)}"
+
+
+def name_in_table(participant, curves):
+    """The name of a participant in a table, with its number when figures show that instead."""
+    if not participant:
+        return "all together"
+    return participant if is_drawn(participant) else f"{number_of(participant, curves)}: {participant}"

@@ -121,6 +121,7 @@ def curves_section(report):
     if not report.analysis.curves:
         return ""
     from tactus.analysis import curve_plots
+    from tactus.analysis import plot_style
     from tactus.analysis import psychometric
     parts, seed = ["<h2>Psychometric functions</h2>\n"], report.analysis.settings.seed
     conditions = []
@@ -132,7 +133,7 @@ def curves_section(report):
         together_curve = mine[0]
         parts.append(f"<h3>{safe(condition.words())}{safe(f' ({condition.study})' if condition.study else '')}</h3>\n")
         names = list(dict.fromkeys(name for c in mine if c.fit for name in c.intervals))
-        rows = [[c.participant or "all together", int(c.total.sum())] + ([f"{number(0.0 if abs(c.value(n)) < SMALLEST else c.value(n))} {span(*c.intervals[n], 'no end')}" if n in c.intervals else "–" for n in names] if c.fit
+        rows = [[plot_style.name_in_table(c.participant, mine), int(c.total.sum())] + ([f"{number(0.0 if abs(c.value(n)) < SMALLEST else c.value(n))} {span(*c.intervals[n], 'no end')}" if n in c.intervals else "–" for n in names] if c.fit
                 else [c.why, *[""] * (len(names) - 1)]) for c in mine]
         parts.append(report.table(f"Maximum likelihood with 95 % intervals: {safe(condition.axis())}.", ["participant", "n", *(names or ["why not"])], rows))
         if together_curve.aic:

@@ -12,6 +12,7 @@ import datetime
 import json
 import re
 
+from tactus.study import bids_labels
 from tactus.study.trial_table import COLUMNS, replace, text_of
 from tactus.tables import escaped
 
@@ -23,11 +24,6 @@ EVENTS = {
     "trial_type": {"LongName": "type of trial", "Description": "the condition"},
     "trial": {"LongName": "trial", "Description": "number of the trial, as in the trial table"},
     "observer": {"LongName": "observer", "Description": "source of the answers", "Levels": {"human": "a person", "simulated": "a program"}}}
-
-
-def label(text):
-    """A label of the standard: letters and digits only."""
-    return re.sub(r"[^A-Za-z0-9]", "", text) or "x"
 
 
 def described():
@@ -75,18 +71,21 @@ def events(session, entries):
     return found
 
 
-def write(folder, session, entries, rows):
-    """Writes the data set to `folder`. session: first entry of the journal; entries: all its entries; rows: of the trial table."""
+def write(folder, session, entries, rows, label=None):
+    """Writes the data set to `folder`. session: first entry of the journal; entries: all its entries; rows: of the trial table; label: of the
+    participant (bids_labels.py); default: from the name alone."""
+    label = label or bids_labels.assigned([session])[session["participant"]]
     number = next((row["session"] for row in rows if row.get("session") is not None), 1)
-    subject, visit, task = f"sub-{label(session['participant'])}", f"ses-{number}", f"task-{label(session['study'])}"
+    subject, visit, task = f"sub-{label}", f"ses-{number}", f"task-{bids_labels.of_name(session['study']) or 'x'}"
     simulated = session["observer"] == "simulated"
     head = {"Name": session["study"] + (" (observer=simulated)" if simulated else ""), "BIDSVersion": VERSION, "DatasetType": "raw", "GeneratedBy": [{"Name": "Tactus"}]}
-    replace(folder / "dataset_description.json", json.dumps(head, indent=2) + "\n")
+    replace(folder / "dataset_description.json", json.dumps(head, indent=2, ensure_ascii=False) + "\n")
     replace(folder / "README", f"Answers to the study {session['study']}.\n\n" + (
         "observer=simulated: a program answered; no person took part.\n" if simulated else "The participants are people; observer=human in every row.\n")
         + "Asynchronies are differences of presentation times, t(b) - t(a) of a pair a,b, measured (soa_achieved_ms) and requested (soa_nominal_ms).\n")
-    put(folder / "participants", ("participant_id", "observer"), [(subject, session["observer"])],
-        {"observer": EVENTS["observer"]})
+    put(folder / "participants", ("participant_id", "name", "observer"), [(subject, session["participant"], session["observer"])],
+        {"name": {"LongName": "name", "Description": "name of the participant, as in participant_id of the other tables; labels have only the letters A to Z and digits"},
+         "observer": EVENTS["observer"]})
     beh = folder / subject / visit / "beh"
     named = f"{subject}_{visit}_{task}"
     put(beh / f"{named}_beh", COLUMNS, [[row.get(name) for name in COLUMNS] for row in rows], {"TaskName": session["study"], **described()})

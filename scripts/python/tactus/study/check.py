@@ -9,7 +9,7 @@ import tempfile
 from tactus import terminal
 from tactus.paths import BIN
 from tactus.refusal import Refusal, sentence_of
-from tactus.study import felt_properties, study_file
+from tactus.study import felt_properties, fonts, study_file, texts
 
 USAGE = """Validates a study file, and refuses it with line and reason if it has an error. Prints the plan of a participant, the number of trials, the
 duration, and the power of the study from simulated observers: the width of the 95 % interval of each estimate, or the smallest loss of success and the
@@ -34,6 +34,7 @@ def parsed(words):
     p.add_argument("--seed", type=int, default=1, help="seed of the simulated participants; default: 1")
     p.add_argument("--json", metavar="FILE", help="also writes the results to FILE")
     a = p.parse_args(words)
+    a.participant = texts.participant_name(a.participant)
     if not (2 <= a.simulations <= 100_000 and a.seed >= 0):
         raise Refusal("--simulations must be from 2 to 100000, and --seed 0 or more; see tactus study check --help")
     try:
@@ -111,7 +112,7 @@ def checked(study, options):
     from tactus.study import power
     from tactus.study.plan import Plan
     plan, assumed = Plan(study, options.participant), assumed_of(study, options)
-    lines = [*plan.describe(), profiles(study)]
+    lines = [*plan.describe(), profiles(study), *fonts.words(study)]
     parts, about = duration.of_session(study, plan.expected_trials), "at most" if study.task == "game" else "about"
     minutes = sum(seconds for _, seconds in parts) / 60
     lines.append(f"{plan.expected_trials} {'games' if study.task == 'game' else 'trials'}, {about} {minutes:.0f} minutes: "
@@ -132,7 +133,7 @@ def main(words):
         for line in lines:
             terminal.report(line)
         if options.json:
-            pathlib.Path(options.json).write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+            pathlib.Path(options.json).write_text(json.dumps(figures, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
         return 0
     except Refusal as refusal:
         terminal.report_refusal(f"study: {refusal}")

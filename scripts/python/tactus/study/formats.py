@@ -14,7 +14,7 @@ import pathlib
 import re
 
 from tactus.refusal import Refusal
-from tactus.study import bids, journal, trial_table
+from tactus.study import bids, bids_labels, journal, trial_table
 from tactus.study.trial_table import COLUMNS, replace, text_of
 from tactus.tables import escaped
 
@@ -144,6 +144,6 @@ def export(folder):
     session, rows = entries[0], rows_of(entries, folder / journal.NAME)
     trial_table.write(folder / "trials.csv", rows)
     psignifit(folder, entries)
-    bids.write(folder / "bids", session, entries, rows)
+    bids.write(folder / "bids", session, entries, rows, bids_labels.of_session(folder, session))
     psychopy(folder, session, entries)
     questionnaire(folder, session, entries)

@@ -210,10 +210,11 @@ class Journal:
             self._answered.add(key_of(whole))
         return whole
 
-    def begin(self, **session):
-        """Writes the session's line, or checks it against the existing one (except the time). True: the session is resumed."""
+    def begin(self, more=None, **session):
+        """Writes the session's line, or checks it against the existing one (except the time). more: further members of a new line. True: the session is
+        resumed."""
         if not self.entries:
-            self.append({"kind": "session", **session})
+            self.append({"kind": "session", **session, **(more or {})})
             return False
         for name, value in session.items():
             if self.entries[0].get(name) != value:

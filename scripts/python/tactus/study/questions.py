@@ -1,12 +1,12 @@
 """Questions to a participant as text, and the interpretation of the answers."""
 
-from tactus.study import study_file
+from tactus.study import texts
 
 
 def words(study, trial):
     """{kind, text, choices, ...}: question of the trial runner after a trial."""
-    spoken = [study_file.SPOKEN[s] for s in trial.condition.senses]
-    fill = lambda text: text.replace("{a}", spoken[0]).replace("{b}", spoken[1]) if spoken else text
+    spoken = [study.phrases[s] for s in trial.condition.senses]
+    fill = lambda text: texts.fill(text, a=spoken[0], b=spoken[1]) if spoken else text
     if study.number:
         low, high, step = study.number
         return {"kind": "number", "text": fill(study.question), "choices": [fill(c) for c in study.choices] if len(study.choices) == 2 else [], "lowest": low, "highest": high, "step": step}

@@ -4,7 +4,7 @@ import os
 
 from tactus import terminal
 from tactus.refusal import Refusal, sentence_of
-from tactus.study import session, study_file
+from tactus.study import fonts, session, study_file, texts
 
 USAGE = """Runs a session of one participant on a live cluster: instructions, trials, questions, breaks. Every trial applies its profile to every
 sense, presents its stimulus, and reads the measured presentation times. A trial that misses the tolerance of the study is marked and repeated.
@@ -19,7 +19,7 @@ class Parser(argparse.ArgumentParser):
 def parsed(words):
     p = Parser(prog="tactus study run", description=USAGE, allow_abbrev=False)
     p.add_argument("study", help="a study file, or the name of a shipped one")
-    p.add_argument("--participant", required=True, help="pseudonym of the participant, for example P01; its number selects the row of the Latin square")
+    p.add_argument("--participant", required=True, help="pseudonym of the participant in letters of any language, for example P01; its number selects the row of the Latin square")
     p.add_argument("--out", default="studies", help="folder of all studies: OUT/STUDY/PARTICIPANT; default: ./studies")
     p.add_argument("--session", type=int, default=1, help="number of the session; sessions from 2 on get their own folder; default: 1")
     p.add_argument("--seed", type=int, help="seed instead of that of the study file")
@@ -32,8 +32,7 @@ def parsed(words):
     p.add_argument("--most", type=int, help="ends after this number of trials; the same command resumes later")
     p.add_argument("--json", metavar="FILE", help="also writes the final summary to FILE")
     a = p.parse_args(words)
-    if not a.participant.replace("-", "").replace("_", "").isalnum() or len(a.participant) > 40:
-        raise Refusal(f"--participant {a.participant}: give a name of letters, digits, - and _, for example P01")
+    a.participant = texts.participant_name(a.participant)
     if a.session < 1:
         raise Refusal(f"--session {a.session}: is below 1; sessions count from 1")
     if a.seed is not None and not 0 <= a.seed < 2**32:
@@ -52,6 +51,8 @@ def main(words):
         study = study_file.read(options.study)
         if options.simulated and study.task != "game" and any(study.observer(c) is None for c in study.conditions):
             raise Refusal(f"{options.study}: has no <observer> for {next(c.id for c in study.conditions if study.observer(c) is None)}; add one, or leave out --simulated")
+        if options.window or options.live is not None:
+            fonts.provide(study, options.window)
         return session.run_session(study, options)
     except Refusal as refusal:
         terminal.report_refusal(f"study: {refusal}")

@@ -9,7 +9,7 @@ import time
 
 from tactus import signals
 from tactus.refusal import Refusal
-from tactus.study import formats, games, questions, stimuli
+from tactus.study import bids_labels, formats, games, questions, stimuli, texts
 from tactus.study.cluster_words import cluster_words, sees
 from tactus.study.journal import Journal
 from tactus.study.trial_runner_client import TrialRunnerClient
@@ -46,7 +46,7 @@ def run_session(study, options):
     plan = Plan(study, options.participant, options.seed)
     observer = "simulated" if options.simulated else "human"
     with Journal(folder) as journal:
-        resumed = journal.begin(study=study.name, study_sha256=study.sha256, participant=options.participant, seed=plan.seed, observer=observer)
+        resumed = bids_labels.begin(journal, study=study.name, study_sha256=study.sha256, participant=options.participant, seed=plan.seed, observer=observer)
         with contextlib.suppress(shutil.SameFileError):  # resumed from the copy itself
             shutil.copyfile(study.path, folder / "study.xml")
         if journal.repaired:
@@ -68,7 +68,7 @@ def run_session(study, options):
             formats.export(folder)
         report(s.summary())
         if options.json:
-            pathlib.Path(options.json).write_text(json.dumps(s.figures(), indent=2) + "\n", encoding="utf-8")
+            pathlib.Path(options.json).write_text(json.dumps(s.figures(), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
     return 0
 
 
@@ -114,9 +114,9 @@ class Session:
 
     def ask(self, question, trial=None):
         """Publishes a question and waits for its answer, without a time limit."""
-        progress = f"{self.plan.done} of {self.plan.expected_trials} done"
+        progress = texts.first_bytes(texts.fill(self.study.phrases["progress"], done=self.plan.done, trials=self.plan.expected_trials), texts.LONGEST_LINE)
         self.runner.answer = self.runner.asked = None
-        self.runner.send(question={**question, "progress": progress, "trial": trial.number if trial else 0, "condition": trial.condition.id[:64] if trial else ""})
+        self.runner.send(question={**question, "progress": progress, "trial": trial.number if trial else 0, "condition": texts.first_bytes(trial.condition.id, texts.LONGEST_LINE) if trial else ""})
         while not self.runner.wait_for(lambda: self.runner.answer is not None or (self.participant and self.runner.asked is not None), 1):
             self.cluster.check()
         return self.runner.answer
@@ -168,7 +168,7 @@ class Session:
         self.questionnaire(self.study.blocks)
         self.journal.append({"kind": "end"})
         if self.runner is not None:
-            self.read("That was the last one. Thank you!")  # all answers are already on the disk
+            self.read(self.study.phrases["end"])  # all answers are already on the disk
 
     def answer(self, trial, attempt, observed):
         if self.study.task == "game":
@@ -249,7 +249,7 @@ class Session:
             self.questionnaire(trial.block - 1)
         if self.participant is None and self.runner is not None:
             since = time.monotonic()
-            self.ask({"kind": "read", "text": f"Block {trial.block - 1} of {self.study.blocks} is done. Take a break of {self.study.break_s:.0f} s or longer; continue when you are ready."})
+            self.ask({"kind": "read", "text": texts.fill(self.study.phrases["break"], block=trial.block - 1, blocks=self.study.blocks, seconds=f"{self.study.break_s:.0f}")})
             left_s = self.study.break_s - (time.monotonic() - since)
             if left_s > 0:
                 self.runner.wait_for(lambda: False, left_s)

@@ -11,12 +11,12 @@ from tactus import own_files
 from tactus.paths import SCENES, SCRIPTS
 from tactus.psychophysics import functions, observers
 from tactus.refusal import Refusal
-from tactus.study import conditions, procedure_element, quantities
+from tactus.study import conditions, procedure_element, quantities, texts
+from tactus.tables import decoded
 
 SCHEMA = pathlib.Path(__file__).with_name("study.xsd")
 SHIPPED = SCRIPTS / "studies"
 LARGEST_BYTES = 1_000_000
-LONGEST_TEXT, LONGEST_CHOICE = 600, 40  # lcmtypes/types/control/question_t.lcm
 MAX_CONDITIONS = 2000
 MAX_LEVELS = 100_000  # of a pair; equals procedure_element.MAX_TRIALS with one trial a level
 YES_OR_NO = ("synchrony", "order", "two_interval")  # answers that a psychometric function describes
@@ -30,7 +30,7 @@ SOFTER = "Which of the two felt softer?"  # default question for two presses of 
 # The haptic node adapts its coupling to these operators of its input and recovers within seconds (LoopDelay in haptic_node/rendering/coupling.h). A degraded
 # press would therefore also soften the next press. A delay of the output ends immediately.
 SLOW_RECOVERY = ("network_delay", "jitter", "loss", "rate", "deadband")
-SPOKEN = {"haptic": "touch", "audio": "sound", "visual": "picture", "thermal": "warmth"}
+ENCODINGS = ("UTF-8", "US-ASCII", "ASCII")  # of the declaration of a file; ASCII is a part of UTF-8
 
 
 @dataclasses.dataclass(frozen=True)
@@ -75,6 +75,7 @@ class Study:
     task: str           # tap, press or game
     seed: int
     instructions: tuple
+    phrases: dict       # texts.PHRASES, with those of the file
     base_delay_ms: float  # common delay of all senses under the policy experiment; it permits negative asynchronies
     base: tuple           # elements of the profile that apply in every trial
     conditions: tuple     # of conditions.Condition
@@ -126,18 +127,19 @@ def read(text, with_scene=True):
         raise Refusal(f"{text}: cannot be read ({error.strerror}); give a study file, or one of {shipped}") from None
     if len(data) > LARGEST_BYTES:
         raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give a study file")
+    decoded(data, text)
     try:
         root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
     except etree.XMLSyntaxError as error:
         raise Refusal(f"{text}:{error.lineno}: {error.msg.splitlines()[0]}") from None
     if root.getroottree().docinfo.internalDTD is not None:
         raise Refusal(f"{text}:1: has a <!DOCTYPE>, but a study file uses no entities and no defaults; remove it and write its entities out")
+    encoding = root.getroottree().docinfo.encoding
+    if encoding and encoding.upper() not in ENCODINGS:
+        raise Refusal(f"{text}:1: declares the encoding {encoding}; save the file as UTF-8, and declare that")
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
     if not schema.validate(root):
         first = schema.error_log[0]
-        for e in root.iter("instructions", "question", "choice", "text"):
-            if e.sourceline == first.line and (letter := next((c for c in e.text or "" if not c.isascii()), None)):
-                raise Refusal(f"{text}:{first.line}: the text of {e.tag} contains {letter!r}; use ASCII only")
         raise Refusal(f"{text}:{first.line}: {first.message.splitlines()[0]}")
     return Reading(text, path, root, hashlib.sha256(data).hexdigest(), with_scene).study()
 
@@ -156,11 +158,35 @@ class Reading:
         text = element.get(name) if element is not None else None
         return default if text is None else quantities.read(text, of, self.where(element))
 
-    def words(self, element, longest=LONGEST_TEXT):
-        text = " ".join((element.text or "").split())
-        if not text or len(text) > longest:
-            self.refuse(element, f"the text of {element.tag} has {len(text)} characters; write 1 to {longest}")
+    def words(self, element, longest=texts.LONGEST_TEXT):
+        text = texts.one_line(element.text or "")
+        if reason := texts.wrong(text, longest):
+            self.refuse(element, f"the text of {element.tag} {reason}")
         return text
+
+    def fits(self, element, text, choices=()):
+        """Refuses a text whose message would be too large, with the longest word that may be filled in for a sense."""
+        longest = max((self.phrases[sense] for sense in texts.SPOKEN), key=lambda word: len(word.encode()))
+        filled = [texts.fill(part, a=longest, b=longest) for part in (text, *choices)]
+        if reason := texts.too_large(filled[0], filled[1:]):
+            self.refuse(element, f"the text of {element.tag} {reason}")
+        return text
+
+    def read_phrases(self, elements):
+        """texts.PHRASES, with those of the file."""
+        found = dict(texts.PHRASES)
+        for e in elements:
+            of = e.get("of")
+            text = self.words(e, texts.LONGEST_CHOICE if of in texts.SPOKEN else texts.LONGEST_TEXT)
+            lacks = [name for name in texts.FILLED_IN.get(of, ()) if "{" + name + "}" not in text]
+            if lacks:
+                self.refuse(e, f"the phrase of {of} lacks {{{lacks[0]}}}, which is filled in; write it where the number belongs")
+            if of == "progress" and len(texts.fill(text, done="99999", trials="99999").encode()) > texts.LONGEST_LINE:
+                self.refuse(e, f"the phrase of progress has more than {texts.LONGEST_LINE} bytes with its numbers; shorten it")
+            if reason := texts.too_large(text):
+                self.refuse(e, f"the phrase of {of} {reason}")
+            found[of] = text
+        return found
 
     def sense(self, element, name):
         if name not in conditions.SENSES:
@@ -169,6 +195,7 @@ class Reading:
 
     def study(self):
         root, find = self.root, self.root.find
+        self.phrases = self.read_phrases(root.findall("phrase"))
         response = find("response")
         kind = response.get("kind", "synchrony") if response is not None else "synchrony"
         task = root.get("task")
@@ -184,7 +211,7 @@ class Reading:
         blocks, tolerance, margin, base = find("blocks"), find("tolerance"), find("margin"), find("base")
         return Study(
             name=root.get("name"), path=self.path, sha256=self.sha256, scene=self.scene() if self.with_scene else None, task=task, seed=int(root.get("seed", "1")),
-            instructions=tuple(self.words(e) for e in root.findall("instructions")),
+            instructions=tuple(self.fits(e, self.words(e)) for e in root.findall("instructions")), phrases=self.phrases,
             base_delay_ms=self.quantity(base, "delay", quantities.OPERATORS["delay"], 100.0),
             base=tuple(self.element(e) for e in (base if base is not None else ())),
             conditions=tuple(found), procedure=procedure_element.read(self, find("procedure"), kind in YES_OR_NO, kind, found), response=kind, question=question, choices=choices,
@@ -268,7 +295,7 @@ class Reading:
     def asked(self, e, kind, found):
         """(question, choices, number), with defaults for absent elements."""
         text, choices = QUESTIONS[kind]
-        given = [self.words(c, LONGEST_CHOICE) for c in e.findall("choice")] if e is not None else []
+        given = [self.words(c, texts.LONGEST_CHOICE) for c in e.findall("choice")] if e is not None else []
         if kind == "two_interval" and self.of(e, kind):
             text = SOFTER
         if e is not None and e.find("question") is not None:
@@ -286,6 +313,8 @@ class Reading:
                     self.refuse(e, "lowest= must be below highest=, and step= above 0 and at most their difference")
         if kind == "matching" and e.get("of") is None:
             self.refuse(e, "matching needs a property; give of=\"stiffness\" or of=\"temperature\"")
+        if e is not None:
+            self.fits(e, text, given or choices)
         return text, tuple(given or choices), number
 
     def of(self, e, kind):
@@ -321,7 +350,7 @@ class Reading:
     def questionnaire(self, e):
         items = []
         for i in e if e is not None else ():
-            choices = tuple(self.words(c, LONGEST_CHOICE) for c in i.findall("choice"))
+            choices = tuple(self.words(c, texts.LONGEST_CHOICE) for c in i.findall("choice"))
             number = [i.get(n) for n in ("lowest", "highest", "step")]
             if not (len(choices) >= 2 and number == [None] * 3 or None not in number and len(choices) in (0, 2)):
                 self.refuse(i, "an item needs two to nine <choice>, or lowest=, highest= and step= (then two <choice> may name its ends)")
@@ -330,7 +359,7 @@ class Reading:
                 self.refuse(i, "lowest= must be below highest=, and step= above 0 and at most their difference")
             if i.get("id") in (known.id for known in items):
                 self.refuse(i, f"the item {i.get('id')} occurs twice; rename one")
-            items.append(Item(i.get("id"), self.words(i.find("text")), choices, *values))
+            items.append(Item(i.get("id"), self.fits(i, self.words(i.find("text")), choices), choices, *values))
         return tuple(items)
 
     def observers(self, found, kind):
