@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 #include <tactus/contact_event_t.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>

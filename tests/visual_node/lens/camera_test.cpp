@@ -1,8 +1,8 @@
 #include "visual_node/lens/camera.h"
 
 #include <catch2/catch.hpp>
-#include <numbers>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 using namespace tactus::visual;
