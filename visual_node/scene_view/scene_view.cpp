@@ -257,7 +257,7 @@ SceneView::PlacedInstance SceneView::place(const ShapePart& part, const Eigen::I
   p.instance.position.head<3>() = camera.about_origin(pose.translation());
   p.instance.body_orientation = Eigen::Quaternionf(Eigen::Quaterniond(body.linear()).cast<float>()).coeffs();
   p.instance.body_position.head<3>() = camera.about_origin(
-      part.relief < 0 ? body.translation()
+      part.relief < 0 ? Eigen::Vector3d(body.translation())
                       : repeated_place(reliefs_[static_cast<std::size_t>(part.relief)].size_m.cast<double>(), body, camera.origin_m));
   if (part.body >= 0 && part.body < static_cast<int>(tints_.size()))
     add_tint(p.instance, tints_[static_cast<std::size_t>(part.body)]);
