@@ -197,7 +197,7 @@ class CheckedFactory : public RendererFactory {
  public:
   void add_options(Arguments& app) override { options_.add_to(app, "renders a log", "--presented"); }
   OfflineInput* prepare(const NodeOptions&) override {
-    input_ = std::make_unique<OfflineInput>(options_, std::vector<Written>{}, kRate_Hz, host_time(0));
+    input_ = std::make_unique<OfflineInput>(options_, std::vector<OfflineInput::Written>{}, kRate_Hz, host_time(0));
     return input_.get();
   }
   std::unique_ptr<Renderer> make(RendererHost&) override { throw std::runtime_error("a check makes no renderer"); }
