@@ -17,8 +17,8 @@ using Place = std::size_t;
 using Triangle = std::array<int, 3>;
 
 // Vertices nearer than this share of the diagonal are one: files in text have about six digits, and single precision seven.
-// Design.
-constexpr double kWeldShare = 1e-6;
+// Far from the origin of its file, single precision moves vertices further, by up to the larger share. Design.
+constexpr double kWeldShare = 1e-6, kMaxWeldShare = 1e-3;
 
 // Sets of equal elements (union-find).
 class Groups {
@@ -40,7 +40,8 @@ class VertexWelder {
   explicit VertexWelder(const TriangleMesh& mesh) : box_(bounds(mesh, Eigen::Isometry3d::Identity())) {
     const double rounding_m = 4 * double(std::numeric_limits<float>::epsilon()) *
                               std::max(box_.min().cwiseAbs().maxCoeff(), box_.max().cwiseAbs().maxCoeff());
-    tolerance_m_ = std::max(kWeldShare * box_.diagonal().norm(), rounding_m);
+    const double diagonal_m = box_.diagonal().norm();
+    tolerance_m_ = std::max(kWeldShare * diagonal_m, std::min(rounding_m, kMaxWeldShare * diagonal_m));
     cell_m_ = 16 * tolerance_m_;
   }
 

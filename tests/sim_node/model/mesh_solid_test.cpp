@@ -1,5 +1,6 @@
 #include "sim_node/model/mesh_solid.h"
 
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <numbers>
 
