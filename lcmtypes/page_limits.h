@@ -6,12 +6,14 @@ namespace tactus {
 
 // WORLD_STATE: 36,000 bodies, the most that a receiver stores (sync/resampling/body_history.h), at least 18 a page.
 inline constexpr int kMaxWorldPages = 2048;
-// CONTACTS: 2,000 contacts, three a page, need 700 pages.
-inline constexpr int kMaxContactPages = 1024;
+// CONTACTS: 2,000 contacts, at least two a page, need 1,000 pages; a converted log has twice the pages of its recording, which held
+// at least three a page.
+inline constexpr int kMaxContactPages = 2048;
 // Of any stream of snapshots; TOUCH_MODEL counts its pages in a byte.
 inline constexpr int kMaxStatePages = kMaxWorldPages;
-// CONTACT_EVENTS: at most 256 events a step (setting event_pages of sim_node), at least 13 a page, need 20 pages.
-inline constexpr int kMaxEventPages = 32;
+// CONTACT_EVENTS: at most 224 events a step (setting event_pages of sim_node), at least 13 a page, need 18 pages; a converted log
+// has twice the pages of its recording.
+inline constexpr int kMaxEventPages = 64;
 // SYNC_REPORT: 64 modalities have 2,016 pairs, at least 6 a page, and need 336 pages, and 7 for themselves.
 inline constexpr int kMaxReportPages = 512;
 // DEGRADATION: 64 kB of text, 1,200 bytes a page.

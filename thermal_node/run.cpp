@@ -40,6 +40,7 @@ class Factory : public sync::RendererFactory {
   }
   sync::OfflineInput* prepare(const sync::NodeOptions& options) override {
     const auto settings = sync::settings_of(thermal::setting_fields(), kThermal.name, options.set);
+    if (options.check && !exposure_.empty()) sync::check_folder_of(exposure_, "--exposure");
     if (log_options_.log.empty()) return nullptr;
     log_ = std::make_unique<sync::OfflineTable>(log_options_, sync::thermal_csv_names(), settings.rate_Hz, sync::host_now());
     return &log_->run();

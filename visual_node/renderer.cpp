@@ -34,6 +34,7 @@ void Options::complete(const std::string& node, const sync::NodeOptions& options
   recording.video = !no_video && !no_pictures;
   if (no_pictures && !recording.snapshot.empty())
     throw std::runtime_error("--no-pictures and --snapshot contradict each other; remove one");
+  if (options.check && !recording.snapshot.empty()) sync::check_folder_of(recording.snapshot, "--snapshot");
   log.snapshot = recording.snapshot;
   log.snapshot_every_s = recording.snapshot_every_s;
 }

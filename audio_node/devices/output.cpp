@@ -151,7 +151,7 @@ void Output::degrade(const DropoutDef& dropout) {
 }
 
 void Output::set_listener(const Eigen::Isometry3d& listener) {
-  const Listener now{listener.cast<float>(), static_cast<float>(settings_.nearest_m)};
+  const Listener now{listener, static_cast<float>(settings_.nearest_m)};
   if (stream_ && sent_listener_ != now && queues_->listeners.push(now)) sent_listener_ = now;
 }
 

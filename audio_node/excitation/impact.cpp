@@ -91,7 +91,7 @@ SourcePosition place_of(const Eigen::Isometry3d& T_W_listener, const Eigen::Vect
   const Eigen::Vector3d p = T_W_listener.inverse() * source_m;
   const double r = p.norm();
   return {r > 1e-9 ? Eigen::Vector3f((p / r).cast<float>()) : Eigen::Vector3f::UnitX(),
-          static_cast<float>(std::max(r, nearest_m)), source_m.cast<float>()};
+          static_cast<float>(std::max(r, nearest_m)), source_m};
 }
 
 Impacts::Impacts(const scene_t& scene, const std::function<std::optional<Extent>(std::int64_t)>& mesh,

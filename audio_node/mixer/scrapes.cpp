@@ -18,7 +18,7 @@ constexpr sync::Nanoseconds kUpdateTimeout{30'000'000};  // design: a few lost m
 constexpr double kMaxTimeout_s = 0.5;                 // design: or twice the update interval, but at most this
 
 // Plausible range. Design: far beyond any scene, so that no number overflows.
-constexpr double kMaxPlace_m = 1e5, kMaxSpeed_m_s = 1e3, kMaxMotion = 10, kMaxStrength = 10;
+constexpr double kMaxPlace_m = 1e7, kMaxSpeed_m_s = 1e3, kMaxMotion = 10, kMaxStrength = 10;
 
 // False for NaN and infinity.
 bool within(const Eigen::Vector3d& v, double max) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= max; }

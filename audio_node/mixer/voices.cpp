@@ -242,7 +242,7 @@ void Voices::render(Voice& v, int frames) {
   const bool numbers = std::all_of(out.begin(), out.begin() + frames, [](float x) { return std::isfinite(x); });
   if (!numbers) silence(v, out.data(), frames);
   v.last = out[static_cast<std::size_t>(frames - 1)];
-  const Eigen::Vector3f ear_m = listener_.value_or(Listener{}).T_W_listener.translation();
+  const Eigen::Vector3d ear_m = listener_.value_or(Listener{}).T_W_listener.translation();
   v.current_place = glide(v.current_place, v.place, ear_m, glide_step_rad_ * static_cast<float>(frames));
   const SourcePosition place = listener_ ? relative_to_listener(*listener_, v.current_place) : v.current_place;
   spatialiser_.add(static_cast<int>(&v - voices_.data()), place, out.data(), frames);

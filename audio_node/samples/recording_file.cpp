@@ -1,9 +1,12 @@
 #include "audio_node/samples/recording_file.h"
 
 #include <sndfile.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -33,6 +36,16 @@ bool clipped(const std::vector<float>& x) {
   for (const float s : x)
     if (in_a_row = std::abs(s) >= kClippingLevel ? in_a_row + 1 : 0; in_a_row >= kClippedSamples) return true;
   return false;
+}
+
+// Size of a RIFF file by its header (IBM and Microsoft 1991, "Multimedia Programming Interface", chapter 2): 8 bytes and the 32 bits
+// at byte 4, little-endian. 0: another format, or a size that a program could not know when it began to write, at or near the largest.
+std::uint64_t declared_bytes(int descriptor) {
+  std::array<unsigned char, 8> head{};
+  if (pread(descriptor, head.data(), head.size(), 0) != static_cast<ssize_t>(head.size())) return 0;
+  if (head[0] != 'R' || head[1] != 'I' || head[2] != 'F' || head[3] != 'F') return 0;
+  const std::uint64_t size = head[4] | std::uint64_t{head[5]} << 8 | std::uint64_t{head[6]} << 16 | std::uint64_t{head[7]} << 24;
+  return size < 0x7ffff000 ? size + 8 : 0;
 }
 
 float peak_of(const std::vector<float>& x) {
@@ -72,9 +85,13 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
   };
   SF_INFO info{};
   std::unique_ptr<SNDFILE, Close> file;
+  bool truncated = false;
   try {
     sync::RegularFile regular(path, std::numeric_limits<std::uintmax_t>::max());
-    file.reset(sf_open_fd(regular.release(), SFM_READ, &info, SF_TRUE));  // closes the descriptor, also when it fails
+    const std::size_t bytes = regular.size_bytes();
+    const int descriptor = regular.release();
+    truncated = declared_bytes(descriptor) > bytes;
+    file.reset(sf_open_fd(descriptor, SFM_READ, &info, SF_TRUE));  // closes the descriptor, also when it fails
   } catch (const std::runtime_error& e) {
     return reject("cannot be read as sound (" + std::string(e.what()) + "); give a WAV or FLAC");
   }
@@ -100,6 +117,10 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
       x.push_back(info.channels == 1 ? frame[0] : 0.5f * (frame[0] + frame[1]));
     }
   }
+  // libsndfile gives the largest number for a FLAC whose header states none.
+  const bool states_length = info.frames < std::numeric_limits<sf_count_t>::max() / 2;
+  truncated = truncated || (states_length && static_cast<sf_count_t>(x.size()) < std::min(info.frames, max_frames));
+  if (truncated) faults.push_back({path, "is shorter than its header states; only the part that is there is played; copy it again", false});
   if (!std::all_of(x.begin(), x.end(), [](float s) { return std::abs(s) <= kMaxSample; }))
     return reject("has invalid samples (NaN, infinite, or far beyond full scale); record it again");
   if (peak_of(x) < kMinPeak) return reject("is silent; record it louder or remove it");

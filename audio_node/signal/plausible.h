@@ -12,10 +12,10 @@ namespace tactus::audio {
 
 // Nothing in a room moves faster than sound in its air (20 degrees Celsius).
 inline constexpr double kMaxPlausibleSpeed_m_s = 343;
-// The mass of a lorry; a hundred times the weight of a block of a ton; a tip of a micrometre; the extent of a
-// town. Design.
+// The mass of a lorry; a hundred times the weight of a block of a ton; a tip of a micrometre; twice the distance from the origin
+// at which a scene may place a body (sim_node/scene/sdf/load_context.cpp). Design.
 inline constexpr double kMaxPlausibleMass_kg = 1e5, kMaxPlausibleForce_N = 1e6, kMaxPlausibleCurvature_1_m = 1e6,
-                        kMaxPlausiblePosition_m = 1e4;
+                        kMaxPlausiblePosition_m = 2e6;
 
 // No dry pair of materials has more; it bounds the loudness of scrapes that a scene can request. Design.
 inline constexpr double kMaxFriction = 2;

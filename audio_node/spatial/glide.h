@@ -31,7 +31,7 @@ inline Eigen::Vector3f rotated_towards(const Eigen::Vector3f& from, const Eigen:
 
 // The place after a step towards another one, for an ear at ear_m in the world. Values that are not finite are
 // passed through. Realtime-safe: yes.
-inline SourcePosition glide(const SourcePosition& from, const SourcePosition& to, const Eigen::Vector3f& ear_m, float max_rad) {
+inline SourcePosition glide(const SourcePosition& from, const SourcePosition& to, const Eigen::Vector3d& ear_m, float max_rad) {
   SourcePosition now = to;
   const Eigen::Vector3f a = from.distance_m * from.direction, b = to.distance_m * to.direction;
   if (a.allFinite() && b.allFinite()) {
@@ -39,8 +39,9 @@ inline SourcePosition glide(const SourcePosition& from, const SourcePosition& to
     if (p != b) now.distance_m = p.norm(), now.direction = p / now.distance_m;
   }
   if (from.source_m.allFinite() && to.source_m.allFinite() && from.source_m != to.source_m) {
-    const Eigen::Vector3f wanted = to.source_m - ear_m, p = rotated_towards(from.source_m - ear_m, wanted, max_rad);
-    if (p != wanted) now.source_m = ear_m + p;
+    const Eigen::Vector3f wanted = (to.source_m - ear_m).cast<float>(),
+                          p = rotated_towards((from.source_m - ear_m).cast<float>(), wanted, max_rad);
+    if (p != wanted) now.source_m = ear_m + p.cast<double>();
   }
   return now;
 }

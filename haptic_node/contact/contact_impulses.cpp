@@ -44,7 +44,7 @@ void ContactImpulses::write_constraints(sync::HostTime now, std::vector<tool_con
       tool_constraint_t c{};
       c.contact_id = e.force.contact_id;
       c.body = e.force.body;
-      c.point_m = to_vec3f(e.force.point);
+      c.point_m = to_vec3(e.force.point);
       c.force_N = to_vec3f(e.force.force_N);
       c.impulse_N_s = to_vec3(e.impulse_N_s);
       c.impulse_since_ns = sync::to_ns(e.since);

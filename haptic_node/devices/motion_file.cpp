@@ -79,6 +79,7 @@ Motion read_motion(std::istream& in, const std::string& name) {
       reject(name, line,
              "the file is larger than " + std::to_string(kMaxMotionFileBytes >> 20) + " MiB; shorten it");
     text = buffer.data();
+    if (text.size() + (in.eof() ? 0 : 1) != count) reject(name, line, "it has a byte 0, so it is no text; name a motion file");
     if (text.ends_with('\r')) text.remove_suffix(1);
     return true;
   };

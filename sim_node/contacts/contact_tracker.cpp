@@ -109,7 +109,7 @@ void ContactTracker::emit(LiveContact& c, std::int8_t kind, sync::SimTime when, 
   e.material_a = surfaces_[static_cast<std::size_t>(m.shape_a)].material;
   e.material_b = surfaces_[static_cast<std::size_t>(m.shape_b)].material;
   e.tool = -1;
-  e.point_m = to_vec3f(status.position_m);
+  e.point_m = to_vec3(status.position_m);
   e.normal = to_vec3f(status.normal);
   e.approach_speed_m_s = static_cast<float>(std::max(0.0, status.speed_m_s));
   e.effective_mass_kg = static_cast<float>(status.mass_kg);
@@ -280,10 +280,10 @@ void ContactTracker::describe(const LiveContact& c, std::span<const BodyMotion> 
   for (const ManifoldPoint& p : m.used()) {
     const Vector3d on_a = p.point_m + 0.5 * p.depth_m * p.normal, on_b = p.point_m - 0.5 * p.depth_m * p.normal;
     contact_point_t& q = out.points.emplace_back();
-    q.a_world_m = to_vec3f(on_a);
-    q.b_world_m = to_vec3f(on_b);
-    q.a_body_m = to_vec3f(a.to_body(on_a));
-    q.b_body_m = to_vec3f(b.to_body(on_b));
+    q.a_world_m = to_vec3(on_a);
+    q.b_world_m = to_vec3(on_b);
+    q.a_body_m = to_vec3(a.to_body(on_a));
+    q.b_body_m = to_vec3(b.to_body(on_b));
   }
   out.point_count = static_cast<std::int8_t>(out.points.size());
 }

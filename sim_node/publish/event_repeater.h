@@ -13,8 +13,8 @@ namespace tactus::sim {
 class EventRepeater {
  public:
   static constexpr sync::Nanoseconds kRepeated{50'000'000};
-  // A contact_event_t has 81 bytes; this number fits into a page with its other fields.
-  static constexpr std::size_t kPerPage = 16;
+  // A contact_event_t has 93 bytes; this number fits into a page with its other fields.
+  static constexpr std::size_t kPerPage = 14;
   // Upper limit: beyond it, the event published most often is dropped.
   static constexpr std::size_t kMax = 4096;
 

@@ -8,7 +8,7 @@
 namespace tactus::sim {
 
 // Maximum number of items per page, by the size of a datagram (tests/lcmtypes/size_test.cpp).
-inline constexpr std::size_t kPlanesPerPage = 7, kAppliedPerPage = 6;
+inline constexpr std::size_t kPlanesPerPage = 7, kAppliedPerPage = 4;
 
 // Calls send(page) for each page of a complete model in order: at least one, so that an empty model is published too.
 // `page` is a buffer of the caller, so that nothing is allocated per step. A model of one page is not copied: the page

@@ -41,7 +41,14 @@ void read_inertial(const LoadContext& context, const sdf::ElementPtr& link, std:
   const sdf::ElementPtr inertial = explicit_child(link, "inertial");
   const sdf::ElementPtr mass = explicit_child(inertial, "mass"), inertia = explicit_child(inertial, "inertia");
   bool has_density = false;
-  MassProperties p = mass_of(context.world, shapes, has_density);
+  std::vector<MassRemark> remarks;
+  MassProperties p = mass_of(context.world, shapes, has_density, &remarks);
+  // The shapes have no effect on a body whose mass, inertia and centre of mass are given.
+  if (!mass || !inertia)
+    for (const MassRemark& r : remarks)
+      context.warn(*link, "has mesh \"" + r.shape + "\", which " + r.clause + " for the " +
+                              (mass ? "inertia" : inertia ? "mass" : "mass and the inertia") +
+                              "; close the mesh, or give <mass> and <inertia>");
   const bool has_volume = p.mass_kg > 0;
   if (!has_volume) p = {kDefaultBodyMass_kg, {0, 0, 0}, kDefaultInertia_kg_m2 * Eigen::Matrix3d::Identity()};
   if (mass) {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "sim_node/scene/shapes.h"
-#include "sim_node/model/triangles.h"
+#include "sim_node/model/mesh_solid.h"
 
 namespace tactus::sim {
 namespace {
@@ -45,8 +44,8 @@ MassProperties capsule(double r, double length, double density) {
   return m;
 }
 
-// In the shape's frame. An open mesh counts as its bounding box.
-MassProperties of_shape(const WorldDef& world, const ShapeDef& shape, double density) {
+// In the shape's frame.
+MassProperties of_shape(const WorldDef& world, const ShapeDef& shape, double density, std::vector<MassRemark>* remarks) {
   const Eigen::Vector3d& size = shape.size_m;
   switch (shape.kind) {
     case ShapeKind::kBox:
@@ -58,16 +57,9 @@ MassProperties of_shape(const WorldDef& world, const ShapeDef& shape, double den
     case ShapeKind::kCapsule:
       return capsule(size.x(), size.z(), density);
     case ShapeKind::kMesh: {
-      const TriangleMesh& mesh = world.meshes[static_cast<std::size_t>(shape.mesh)];
-      const Eigen::AlignedBox3d bounding_box = bounds(mesh, Eigen::Isometry3d::Identity());
-      const VolumeIntegral integral = integrate(mesh);
-      MassProperties m{density * integral.volume_m3, integral.centroid_m, density * integral.inertia};
-      const bool closed = integral.volume_m3 > 1e-3 * bounding_box.volume() && integral.volume_m3 <= bounding_box.volume() * 1.001 &&
-                          m.inertia_kg_m2.ldlt().isPositive();
-      if (closed) return m;
-      m = box(bounding_box.sizes().cwiseMax(1e-4), density);
-      m.centre_of_mass_m = bounding_box.center();
-      return m;
+      const MeshSolid solid = solid_of(world.meshes[static_cast<std::size_t>(shape.mesh)]);
+      if (remarks && !solid.remark.empty()) remarks->push_back({shape.name, solid.remark});
+      return {density * solid.integral.volume_m3, solid.integral.centroid_m, density * solid.integral.inertia};
     }
     case ShapeKind::kPlane:
     case ShapeKind::kHeightfield:
@@ -83,13 +75,14 @@ Eigen::Matrix3d steiner(double mass_kg, const Eigen::Vector3d& offset) {
 
 }  // namespace
 
-MassProperties mass_of(const WorldDef& world, std::span<const ShapeDef> shapes, bool& has_density) {
+MassProperties mass_of(const WorldDef& world, std::span<const ShapeDef> shapes, bool& has_density,
+                       std::vector<MassRemark>* remarks) {
   has_density = std::all_of(shapes.begin(), shapes.end(), [](const ShapeDef& s) { return s.material >= 0; });
   std::vector<MassProperties> parts;
   MassProperties sum;
   for (const ShapeDef& shape : shapes) {
     const double density = has_density ? world.materials[static_cast<std::size_t>(shape.material)].density_kg_m3 : 1;
-    MassProperties part = of_shape(world, shape, density);
+    MassProperties part = of_shape(world, shape, density, remarks);
     const Eigen::Matrix3d turn = shape.pose.linear();
     part.centre_of_mass_m = shape.pose * part.centre_of_mass_m;
     part.inertia_kg_m2 = turn * part.inertia_kg_m2 * turn.transpose();

@@ -84,12 +84,12 @@ void read_tool_shape(LoadContext& context, const sdf::Element& element, Attribut
 }
 
 // A solid of uniform density; a point counts as a ball of 1 mm.
-Eigen::Matrix3d tool_inertia(const WorldDef& world, const tool_def_t& tool, Eigen::Vector3d& centre_m) {
+Eigen::Matrix3d tool_inertia(const WorldDef& world, const tool_def_t& tool, Eigen::Vector3d& centre_m, std::vector<MassRemark>& remarks) {
   ShapeDef shape = tool_shape(tool);
   shape.material = -1;
   if (shape.kind == ShapeKind::kSphere) return 0.4 * tool.mass_kg * std::pow(std::max(tool.radius_m, 1e-3), 2) * Eigen::Matrix3d::Identity();
   bool has_density = false;
-  const MassProperties mass = scaled_to(mass_of(world, std::span(&shape, 1), has_density), tool.mass_kg);
+  const MassProperties mass = scaled_to(mass_of(world, std::span(&shape, 1), has_density, &remarks), tool.mass_kg);
   centre_m = mass.centre_of_mass_m;
   return mass.inertia_kg_m2;
 }
@@ -142,7 +142,10 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   if (tool.radius_m > kMaxSize_m)
     context.reject(*element, "extends further than 1 m from its origin: make it smaller");
   BodyDef& held = context.world.bodies.back();
-  held.inertia_kg_m2 = tool_inertia(context.world, tool, held.centre_of_mass_m);
+  std::vector<MassRemark> remarks;
+  held.inertia_kg_m2 = tool_inertia(context.world, tool, held.centre_of_mass_m, remarks);
+  for (const MassRemark& r : remarks)
+    context.warn(*element, "has a mesh that " + r.clause + " for the inertia; close the mesh");
   context.world.tools.push_back(tool);
 }
 

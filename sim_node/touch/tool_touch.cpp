@@ -212,7 +212,7 @@ void ToolTouch::emit(const Near& n, std::int8_t kind, SimTime when, std::span<co
   e.material_a = tool_is_b ? traits.material : tool_material_;
   e.material_b = tool_is_b ? tool_material_ : traits.material;
   e.tool = tool_;
-  e.point_m = to_vec3f(n.plane.point);
+  e.point_m = to_vec3(n.plane.point);
   e.normal = to_vec3f(tool_is_b ? n.plane.normal : Vector3d(-n.plane.normal));
   e.approach_speed_m_s = static_cast<float>(std::max(0.0, n.closing_m_s));
   e.effective_mass_kg = static_cast<float>(mass_kg(n, bodies));
@@ -323,7 +323,7 @@ void ToolTouch::write_model(SimTime now, std::span<const BodyMotion> bodies) {
     p.material = s.traits.material;
     p.point_m = to_vec3(n.plane.point);
     p.normal = to_vec3f(n.plane.normal);
-    p.point_body_m = to_vec3f(body.to_body(n.plane.point));
+    p.point_body_m = to_vec3(body.to_body(n.plane.point));
     const Vector3d normal_body = body.orientation.conjugate() * n.plane.normal;
     p.normal_body = to_vec3f(normal_body);
     p.tool_point_m = to_vec3f(n.tool_point_m);
@@ -371,10 +371,10 @@ void ToolTouch::describe(std::span<const BodyMotion> bodies, std::vector<contact
     c.point_count = 1;
     const Vector3d in_tool = shape_ ? n.tool_point_m : Vector3d(on_tool - proxy_);
     contact_point_t p{};
-    p.a_world_m = to_vec3f(tool_is_b ? on_body : on_tool);
-    p.b_world_m = to_vec3f(tool_is_b ? on_tool : on_body);
-    p.a_body_m = to_vec3f(tool_is_b ? body.to_body(on_body) : in_tool);
-    p.b_body_m = to_vec3f(tool_is_b ? in_tool : body.to_body(on_body));
+    p.a_world_m = to_vec3(tool_is_b ? on_body : on_tool);
+    p.b_world_m = to_vec3(tool_is_b ? on_tool : on_body);
+    p.a_body_m = to_vec3(tool_is_b ? body.to_body(on_body) : in_tool);
+    p.b_body_m = to_vec3(tool_is_b ? in_tool : body.to_body(on_body));
     c.points.push_back(p);
     out.push_back(c);
   }

@@ -2,10 +2,14 @@
 
 #include <signal.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <utility>
 #include <tactus/input_health_t.hpp>
@@ -111,6 +115,14 @@ int fail(const std::string& node, const std::exception& e) {
   std::cerr << (message.starts_with(node) ? "" : node + ": ") << printable(message) << "\n";
   return 1;
 }
+
+void check_folder_of(const std::string& path, const std::string& option) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0)
+    throw std::runtime_error("cannot write " + path + " (" + std::strerror(errno) + "); choose another " + option);
+}
+
+void check_node_files(const NodeOptions& options) { with_profile(options); }
 
 Node::Node(NodeDescriptor descriptor, NodeOptions options)
     : descriptor_(std::move(descriptor)),

@@ -27,6 +27,13 @@
 
 namespace tactus::sync {
 
+// Reads the files that the options of every node name, as the constructor of Node does. Throws std::runtime_error with one sentence.
+void check_node_files(const NodeOptions& options);
+
+// Throws std::runtime_error with one sentence when no file can be created there: its folder is missing, or not writable. For the
+// check of an output file that is created later. option: named in the sentence.
+void check_folder_of(const std::string& path, const std::string& option);
+
 class Node {
  public:
   // Sets its priority, opens the bus, prints one line. Throws std::runtime_error with one sentence.

@@ -91,6 +91,10 @@ int run_renderer(const NodeDescriptor& descriptor, RendererFactory& factory, int
   parse_or_exit(app, descriptor.name, argc, argv);
   OfflineInput* const log = factory.prepare(options);
   if (log) log->adapt(options);
+  if (options.check) {
+    check_node_files(options);
+    return 0;  // not exit(): the factory removes the unfinished files of a log that it opened
+  }
   RendererRun(descriptor, options, factory, log).loop();
   return 0;
 } catch (const std::exception& e) {

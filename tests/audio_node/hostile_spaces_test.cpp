@@ -140,16 +140,20 @@ std::vector<float> play(const std::string& spatial, const std::string& method, i
     for (int i = 0; i < wild; ++i) {
       const float value = bad[(block + i) % 5];
       contact_event_t e = blow(++wild_id, 1);
-      (block % 4 == 0   ? e.approach_speed_m_s
-       : block % 4 == 1 ? e.effective_mass_kg
-       : block % 4 == 2 ? e.point_m.x
-                        : e.normal.y) = value;
+      if (block % 4 == 2)
+        e.point_m.x = double{value};
+      else
+        (block % 4 == 0   ? e.approach_speed_m_s
+         : block % 4 == 1 ? e.effective_mass_kg
+                          : e.normal.y) = value;
       bench->hit(e);
       // Also for the existing contact: a contradiction.
       contact_t c = stroke(i % 2 ? 7 : ++wild_id, 0.1f, 2);
-      (block % 3 == 0   ? c.sliding_velocity_m_s.x
-       : block % 3 == 1 ? c.normal_force_N
-                        : c.points[0].a_world_m.z) = c.normal.x = value;
+      c.normal.x = value;
+      if (block % 3 == 2)
+        c.points[0].a_world_m.z = double{value};
+      else
+        (block % 3 == 0 ? c.sliding_velocity_m_s.x : c.normal_force_N) = value;
       contacts.push_back(c);
     }
     bench->submit_contacts(contacts);

@@ -9,7 +9,6 @@
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_t.hpp>
 #include <tactus/scene_t.hpp>
-#include <tactus/vec3f_t.hpp>
 
 #include "audio_node/excitation/impact.h"
 #include "audio_node/signal/plausible.h"
@@ -35,7 +34,8 @@ float one_of(std::mt19937& random, std::initializer_list<float> values) {
   return values.begin()[random() % values.size()];
 }
 
-void poison(vec3f_t& v, float value, std::mt19937& random) {
+template <class Vector>
+void poison(Vector& v, float value, std::mt19937& random) {
   (random() % 3 == 0 ? v.x : random() % 2 ? v.y : v.z) = value;
 }
 
@@ -46,7 +46,7 @@ contact_event_t wild_event(std::int64_t id, std::mt19937& random) {
     case 0: e.approach_speed_m_s = one_of(random, {kNan, kInf, -kInf, -1, 1e4f, 1e30f}); break;
     case 1: e.effective_mass_kg = one_of(random, {kNan, kInf, 0, -1, 1e12f}); break;
     case 2: e.curvature_1_m = one_of(random, {kNan, kInf, -5, 1e9f}); break;
-    case 3: poison(e.point_m, one_of(random, {kNan, kInf, 1e30f, -1e6f}), random); break;
+    case 3: poison(e.point_m, one_of(random, {kNan, kInf, 1e30f, -1e7f}), random); break;
     case 4: poison(e.normal, one_of(random, {kNan, kInf, 1e5f}), random); break;
     case 5: e.body_b = e.body_a; break;
     default: e.body_a = -static_cast<int>(random() % 100) - 1;

@@ -38,14 +38,14 @@ std::vector<Item> full(test::Samples& samples, int count) {
 }
 }  // namespace
 
-TEST_CASE("A page of 7 planes and 6 applied entries of a touch model fits a datagram") {
+TEST_CASE("A page of 7 planes and 4 applied entries of a touch model fits a datagram") {
   test::Samples samples(1);
   touch_model_t m{};
   samples.fill(m);
   m.planes = full<touch_plane_t>(samples, 7);
-  m.applied = full<touch_applied_t>(samples, 6);
+  m.applied = full<touch_applied_t>(samples, 4);
   m.plane_count = 7;
-  m.applied_count = 6;
+  m.applied_count = 4;
   CHECK(sync::encode(m).size() <= kMax);
 }
 
@@ -58,16 +58,16 @@ TEST_CASE("A tool state with 12 constraints fits a datagram") {
   CHECK(sync::encode(m).size() <= kMax);
 }
 
-TEST_CASE("A page holds at least 3 contacts of 4 points, 13 events, 18 bodies") {
+TEST_CASE("A page holds at least 2 contacts of 4 points, 14 events, 18 bodies") {
   test::Samples samples(1);
   contact_frame_t contacts{};
-  contacts.contacts = full<contact_t>(samples, 3);
+  contacts.contacts = full<contact_t>(samples, 2);
   for (contact_t& c : contacts.contacts) c.points = full<contact_point_t>(samples, 4), c.point_count = 4;
-  contacts.count = 3;
+  contacts.count = 2;
   CHECK(sync::encode(contacts).size() <= kMax);
   contact_events_t events{};
-  events.events = full<contact_event_t>(samples, 13);
-  events.count = 13;
+  events.events = full<contact_event_t>(samples, 14);
+  events.count = 14;
   CHECK(sync::encode(events).size() <= kMax);
   world_state_t world{};
   world.bodies = full<body_state_t>(samples, 18);

@@ -32,9 +32,17 @@ Camera make_camera(const Eigen::Isometry3d& pose, double horizontal_fov_rad, int
   return moved(c, pose);
 }
 
+Eigen::Vector3d drawing_origin(const Eigen::Vector3d& eye_m) {
+  if (!eye_m.allFinite()) return Eigen::Vector3d::Zero();
+  return (kOriginGrid_m * (eye_m / kOriginGrid_m).array().round()).matrix();
+}
+
 Camera moved(Camera camera, const Eigen::Isometry3d& pose) {
-  camera.view = eye_from_camera() * pose.inverse().matrix().cast<float>();
-  camera.eye = pose.translation().cast<float>();
+  camera.origin_m = drawing_origin(pose.translation());
+  Eigen::Isometry3d about_origin = pose;
+  about_origin.translation() -= camera.origin_m;
+  camera.view = eye_from_camera() * about_origin.inverse().matrix().cast<float>();
+  camera.eye = about_origin.translation().cast<float>();
   return camera;
 }
 

@@ -51,7 +51,8 @@ void Lens::place_room(const scene_t& scene, const Settings& settings) {
 }
 
 Camera Lens::camera(const std::optional<Eigen::Isometry3d>& head) const {
-  if (wall_) return off_axis(*wall_, head.value_or(default_pose_).translation(), width_, near_m_, far_m_);
+  const Eigen::Vector3d eye = head.value_or(default_pose_).translation();
+  if (wall_) return off_axis(*wall_, eye, drawing_origin(eye), width_, near_m_, far_m_);
   return head ? moved(default_camera_, *head) : default_camera_;
 }
 
@@ -63,7 +64,8 @@ std::array<Camera, 2> Lens::eyes(const std::optional<Eigen::Isometry3d>& head, d
                     at * Eigen::Vector3d(window_m, half_width_ * window_m, half_height_ * window_m)};
   const Wall& wall = wall_ ? *wall_ : window;
   const auto [left, right] = visual::eyes(at, eye_distance_m);
-  return {off_axis(wall, left, width_, near_m_, far_m_), off_axis(wall, right, width_, near_m_, far_m_)};
+  const Eigen::Vector3d origin_m = drawing_origin(at.translation());  // of both eyes, and of camera()
+  return {off_axis(wall, left, origin_m, width_, near_m_, far_m_), off_axis(wall, right, origin_m, width_, near_m_, far_m_)};
 }
 
 }  // namespace tactus::visual

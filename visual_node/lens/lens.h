@@ -17,7 +17,7 @@ class Lens {
   // Reads the file of the room, if one is set: do not call in a loop.
   Lens(const scene_t& scene, const Settings& settings, int width, int height);
 
-  // head: T_world_head, x ahead, z up; nothing: the pose of the scene's camera.
+  // head: T_world_head, x ahead, z up; nothing: the pose of the scene's camera. All cameras of one head have the same origin.
   Camera camera(const std::optional<Eigen::Isometry3d>& head) const;
   // Cameras of the left and the right eye. Without a wall both look through a window of the picture's size, which
   // moves with the head: both eyes see a point at the window's distance at the same place.

@@ -4,13 +4,13 @@
 
 namespace tactus::visual {
 
-Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double near_m, double far_m) {
+Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, const Eigen::Vector3d& origin_m, int width, double near_m, double far_m) {
   const Eigen::Vector3d right = wall.right(), up = wall.up(), normal = wall.normal();
   const double before_m = (eye - wall.lower_left).dot(normal), away_m = std::max(before_m, kMinEyeDistance_m);
-  const Eigen::Vector3d origin = eye + (away_m - before_m) * normal;
-  // Extent of the wall seen origin there, projected onto the near plane.
+  const Eigen::Vector3d place = eye + (away_m - before_m) * normal;
+  // Extent of the wall seen from there, projected onto the near plane.
   const auto near = [&](const Eigen::Vector3d& axis, const Eigen::Vector3d& corner) {
-    return axis.dot(corner - origin) * near_m / away_m;
+    return axis.dot(corner - place) * near_m / away_m;
   };
   const double l = near(right, wall.lower_left), r = near(right, wall.lower_right);
   const double b = near(up, wall.lower_left), t = near(up, wall.upper_left);
@@ -21,11 +21,12 @@ Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double 
       0, 0, -1, 0;
   Eigen::Isometry3d eye_from_world = Eigen::Isometry3d::Identity();
   eye_from_world.linear() << right.transpose(), up.transpose(), normal.transpose();
-  eye_from_world.translation() = eye_from_world.linear() * -origin;
+  eye_from_world.translation() = eye_from_world.linear() * (origin_m - place);
   Camera camera;
   camera.projection = projection.cast<float>();
   camera.view = eye_from_world.matrix().cast<float>();
-  camera.eye = origin.cast<float>();
+  camera.origin_m = origin_m;
+  camera.eye = camera.about_origin(place);
   camera.focal_px = static_cast<float>(width * away_m / wall.width_m());
   return camera;
 }

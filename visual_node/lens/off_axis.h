@@ -9,9 +9,13 @@
 namespace tactus::visual {
 
 // Maps the corners of the wall to those of the picture (Kooima, "Generalized Perspective Projection", 2009). wall
-// and eye: in the world frame. near_m and far_m: depth along the normal of the wall. An eye in the plane of the
-// wall or behind it is moved to kMinEyeDistance_m before it.
-Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double near_m, double far_m);
+// and eye: in the world frame. origin_m: origin of the picture, world. near_m and far_m: depth along the normal of the wall. An eye
+// in the plane of the wall or behind it is moved to kMinEyeDistance_m before it.
+Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, const Eigen::Vector3d& origin_m, int width, double near_m, double far_m);
+// The same with the origin that belongs to the eye.
+inline Camera off_axis(const Wall& wall, const Eigen::Vector3d& eye, int width, double near_m, double far_m) {
+  return off_axis(wall, eye, drawing_origin(eye), width, near_m, far_m);
+}
 
 inline constexpr double kMinEyeDistance_m = 0.01;  // design: no eye comes closer to a screen
 

@@ -15,8 +15,12 @@ const Pen kSpring{{0.9f, 0.9f, 1.0f, 0.9f}}, kProxy{{1, 1, 1, 1}, 2}, kDevice{{1
 constexpr float kAxis_m = 0.04f, kSpringWidth_m = 0.012f;
 constexpr double kApart_m = 1e-3;  // below this distance of proxy and device the spring is not drawn
 
-Eigen::Vector3f middle(const contact_point_t& p) {
-  return (to_eigen(p.a_world_m) + to_eigen(p.b_world_m)).cast<float>() / 2;
+Eigen::Vector3f middle(const contact_point_t& p, const Eigen::Vector3d& origin_m) {
+  return ((to_eigen(p.a_world_m) + to_eigen(p.b_world_m)) / 2 - origin_m).cast<float>();
+}
+
+Eigen::Isometry3d pose_about(const Eigen::Isometry3d& pose, const Eigen::Vector3d& origin_m) {
+  return Eigen::Translation3d(-origin_m) * pose;
 }
 
 std::span<const contact_t> drawn(std::span<const contact_t> contacts) {
@@ -25,40 +29,42 @@ std::span<const contact_t> drawn(std::span<const contact_t> contacts) {
 
 }  // namespace
 
-void append_contacts(std::vector<Stroke>& out, std::span<const contact_t> contacts) {
+void append_contacts(std::vector<Stroke>& out, std::span<const contact_t> contacts, const Eigen::Vector3d& origin_m) {
   for (const contact_t& c : drawn(contacts)) {
     const Pen& pen = c.tool >= 0 ? kOfTool : kOfOthers;
     const Eigen::Vector3f normal = to_eigen(c.normal).cast<float>();
     for (const contact_point_t& p : c.points) {
-      append_cross(out, middle(p), kNormal_m / 2, pen);
-      append_line(out, middle(p), middle(p) + normal * kNormal_m, pen);
+      const Eigen::Vector3f at = middle(p, origin_m);
+      append_cross(out, at, kNormal_m / 2, pen);
+      append_line(out, at, at + normal * kNormal_m, pen);
     }
   }
 }
 
-void append_contact_forces(std::vector<Stroke>& out, std::span<const contact_t> contacts, float scale_m_N) {
+void append_contact_forces(std::vector<Stroke>& out, std::span<const contact_t> contacts, float scale_m_N,
+                           const Eigen::Vector3d& origin_m) {
   for (const contact_t& c : drawn(contacts)) {
     if (c.points.empty() || c.normal_force_N <= 0) continue;
     Eigen::Vector3f at = Eigen::Vector3f::Zero();
-    for (const contact_point_t& p : c.points) at += middle(p) / static_cast<float>(c.points.size());
+    for (const contact_point_t& p : c.points) at += middle(p, origin_m) / static_cast<float>(c.points.size());
     append_arrow(out, at, to_eigen(c.normal).cast<float>() * c.normal_force_N * scale_m_N, kForce);
   }
 }
 
 void append_hand_force(std::vector<Stroke>& out, const ToolPose& pose, const tool_state_t& state,
-                       float scale_m_N) {
+                       float scale_m_N, const Eigen::Vector3d& origin_m) {
   if (!pose.known) return;
-  append_arrow(out, pose.proxy.translation().cast<float>(), to_eigen(state.force_N).cast<float>() * scale_m_N,
+  append_arrow(out, pose_about(pose.proxy, origin_m).translation().cast<float>(), to_eigen(state.force_N).cast<float>() * scale_m_N,
                kHandForce);
 }
 
-void append_tool(std::vector<Stroke>& out, const ToolPose& pose) {
+void append_tool(std::vector<Stroke>& out, const ToolPose& pose, const Eigen::Vector3d& origin_m) {
   if (!pose.known) return;
-  append_axes(out, pose.proxy, kAxis_m, kProxy);
-  append_axes(out, pose.device, kAxis_m, kDevice);
+  const Eigen::Isometry3d proxy = pose_about(pose.proxy, origin_m), device = pose_about(pose.device, origin_m);
+  append_axes(out, proxy, kAxis_m, kProxy);
+  append_axes(out, device, kAxis_m, kDevice);
   if ((pose.device.translation() - pose.proxy.translation()).norm() > kApart_m)
-    append_spring(out, pose.proxy.translation().cast<float>(), pose.device.translation().cast<float>(),
-                  kSpringWidth_m, kSpring);
+    append_spring(out, proxy.translation().cast<float>(), device.translation().cast<float>(), kSpringWidth_m, kSpring);
 }
 
 }  // namespace tactus::visual

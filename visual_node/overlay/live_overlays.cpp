@@ -105,13 +105,14 @@ void LiveOverlays::append(Frame& frame, PanelData data, sync::HostTime now, int 
   sync::Sample<sync::Contacts> touching;
   if (needs_contacts() && frame.instant) touching = contacts_.state_at(*frame.instant);
   auto& strokes = frame.list.strokes;
-  if (on_.on(Overlay::kContacts)) append_contacts(strokes, touching.value);
-  if (on_.on(Overlay::kForces)) append_contact_forces(strokes, touching.value, force_scale_m_N_);
+  const Eigen::Vector3d& origin_m = frame.list.camera.origin_m;
+  if (on_.on(Overlay::kContacts)) append_contacts(strokes, touching.value, origin_m);
+  if (on_.on(Overlay::kForces)) append_contact_forces(strokes, touching.value, force_scale_m_N_, origin_m);
   for (std::size_t i = 0; i < std::min<std::size_t>(frame.tools.size(), kMaxTools); ++i) {
-    if (on_.on(Overlay::kTools)) append_tool(strokes, frame.tools[i]);
+    if (on_.on(Overlay::kTools)) append_tool(strokes, frame.tools[i], origin_m);
     const auto state = tools_.find(static_cast<int>(i));
     if (on_.on(Overlay::kForces) && state != tools_.end())
-      append_hand_force(strokes, frame.tools[i], state->second, force_scale_m_N_);
+      append_hand_force(strokes, frame.tools[i], state->second, force_scale_m_N_, origin_m);
   }
   data.contacts = touching.value.size();
   data.physics = physics_;

@@ -69,7 +69,7 @@ std::optional<Ray> ray_at(const DrawList& list, float x, float y) {
 
 }  // namespace
 
-std::optional<Eigen::Vector3f> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
+std::optional<Eigen::Vector3d> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
                                             float y) {
   const auto ray = ray_at(list, x, y);
   if (!ray) return std::nullopt;
@@ -89,7 +89,7 @@ std::optional<Eigen::Vector3f> pick_surface(const DrawList& list, std::span<cons
     }
   }
   if (!std::isfinite(nearest)) return std::nullopt;
-  return ray->from + nearest * ray->along;
+  return list.camera.origin_m + (ray->from + nearest * ray->along).cast<double>();
 }
 
 std::optional<device_state_t> MousePointer::state(sync::HostTime now) {

@@ -13,7 +13,7 @@ namespace tactus::visual {
 
 // The point on the nearest opaque surface in the picture at (x, y), shares of its width and height from the upper
 // left. m, world. Nothing: no surface, or no view covers that place. Tests every triangle: some ms for 100,000.
-std::optional<Eigen::Vector3f> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
+std::optional<Eigen::Vector3d> pick_surface(const DrawList& list, std::span<const Triangles> geometries, float x,
                                             float y);
 
 // Name of the device that the mouse is; it steers a lamp with --device LAMP=external:mouse.

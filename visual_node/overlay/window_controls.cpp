@@ -26,7 +26,7 @@ void WindowControls::step(sync::HostTime now, Display& display, LiveOverlays& ov
   for (const Button button : inputs.buttons) questions.press(button, now);
   if (inputs.aim)
     if (const auto hit = pick_surface(list, geometries, inputs.aim->first, inputs.aim->second))
-      pointer_.aim(hit->cast<double>());
+      pointer_.aim(*hit);
   if (auto state = pointer_.state(now)) bus_.publish(channels::kDeviceState, *state);
   while (const auto m = replies_->pop())
     if (m->message.header.run_id == bus_.identity().run_id) requests_.push(m->message);

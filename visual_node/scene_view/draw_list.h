@@ -1,4 +1,5 @@
-// The content of one frame as plain data: the scene view builds it and the renderer draws it.
+// The content of one frame as plain data: the scene view builds it and the renderer draws it. All places are in the axes of the world
+// about the origin of the picture, camera.origin_m.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,13 +15,14 @@ namespace tactus::visual {
 // One shape and its pose. The layout is that of the instance attributes of shaders/surface.vert.
 struct Instance {
   Eigen::Vector4f orientation{0, 0, 0, 1};  // T_world_shape, quaternion x, y, z, w
-  Eigen::Vector4f position{0, 0, 0, 1};     // m, world; w unused
+  Eigen::Vector4f position{0, 0, 0, 1};     // m, about the origin; w unused
   Eigen::Vector4f scale{1, 1, 1, 16};       // along the axes of the shape; w: Phong exponent
   Eigen::Vector4f diffuse{1, 1, 1, 1};      // linear; w: opacity
   Eigen::Vector4f specular{0, 0, 0, 0};     // linear; w unused
   Eigen::Vector4f ambient{0, 0, 0, 0};      // share of the ambient light that the shape returns; w unused
   Eigen::Vector4f emissive{0, 0, 0, 0};     // linear; w unused
-  // T_world_body, as above: a relief is defined in the frame of the body.
+  // T_world_body, as above: a relief is defined in the frame of the body. The position of a far body may be moved by whole repetitions of
+  // its relief.
   Eigen::Vector4f body_orientation{0, 0, 0, 1};
   Eigen::Vector4f body_position{0, 0, 0, 1};
 };
@@ -38,7 +40,7 @@ struct Batch {
 
 // The layout is that of one element of the light block in shaders/lamps.glsl (std140).
 struct Light {
-  Eigen::Vector4f position{0, 0, 0, 0};  // m, world; w: 0 for a directional light, which has no position
+  Eigen::Vector4f position{0, 0, 0, 0};  // m, about the origin; w: 0 for a directional light, which has no position
   Eigen::Vector4f direction{0, 0, -1, 0};   // unit, away from the lamp; w unused
   Eigen::Vector4f diffuse{0, 0, 0, 0};      // linear, times intensity; w: range in m
   Eigen::Vector4f specular{0, 0, 0, 0};     // linear, times intensity; w unused
@@ -53,7 +55,7 @@ inline constexpr int kMaxLights = 8;
 struct Lighting {
   std::vector<Light> lights;                                  // at most kMaxLights
   int shadow_light = -1;                                      // index of the light that casts a shadow, -1: none
-  Eigen::Matrix4f shadow_clip = Eigen::Matrix4f::Identity();  // world to the clip space of that lamp
+  Eigen::Matrix4f shadow_clip = Eigen::Matrix4f::Identity();  // places about the origin to the clip space of that lamp
   Eigen::Vector3f ambient = Eigen::Vector3f::Zero();          // linear
   Eigen::Vector3f background = Eigen::Vector3f::Zero();       // linear
   float exposure = 1;
@@ -61,7 +63,7 @@ struct Lighting {
 
 // A disc of light, drawn over the picture and added to it.
 struct Glow {
-  Eigen::Vector4f centre;  // m, world; w: growth of the flash, 0 .. 1
+  Eigen::Vector4f centre;  // m, about the origin; w: growth of the flash, 0 .. 1
   Eigen::Vector4f u, v;    // half axes, m, world
   Eigen::Vector4f colour;  // linear, premultiplied; w unused
 };
@@ -69,8 +71,8 @@ static_assert(sizeof(Glow) == 4 * 16);
 
 // A straight line in space, drawn over the picture, in sRGB.
 struct Stroke {
-  Eigen::Vector4f from;    // m, world; w: width in pixels
-  Eigen::Vector4f to;      // m, world; w unused
+  Eigen::Vector4f from;    // m, about the origin; w: width in pixels
+  Eigen::Vector4f to;      // m, about the origin; w unused
   Eigen::Vector4f colour;  // w: opacity
 };
 static_assert(sizeof(Stroke) == 3 * 16);

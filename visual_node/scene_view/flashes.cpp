@@ -41,7 +41,7 @@ void Flashes::append_glows(const Flash& f, sync::HostTime t, const Camera& camer
   const float age =
       std::clamp(static_cast<float>((t - f.first).count()) / static_cast<float>(duration_.count()), 0.0f, 1.0f);
   const float grown = kFirstSize + (1 - kFirstSize) * std::sqrt(age);
-  const Eigen::Vector3f centre = to_eigen(f.event.point_m).cast<float>();
+  const Eigen::Vector3f centre = camera.about_origin(to_eigen(f.event.point_m));
   const float distance_m = std::max((centre - camera.eye).norm(), 1e-3f);
   const float radius_m = grown * std::max(radius_m_, min_px_ * distance_m / camera.focal_px);
   const float speed = std::clamp(std::sqrt(f.event.approach_speed_m_s / kFullSpeed_m_s), kMinStrength, 1.0f);

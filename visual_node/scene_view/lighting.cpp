@@ -31,6 +31,11 @@ Eigen::Matrix4f shadow_clip(const light_def_t& lamp) {
          look_along(to_eigen(lamp.pose.position_m), to_eigen(lamp.direction));
 }
 
+light_def_t about(light_def_t lamp, const Eigen::Vector3d& origin_m) {
+  lamp.pose.position_m = to_vec3(to_eigen(lamp.pose.position_m) - origin_m);
+  return lamp;
+}
+
 }  // namespace
 
 Light make_light(const light_def_t& lamp) {
@@ -52,10 +57,18 @@ Light make_light(const light_def_t& lamp) {
   return l;
 }
 
-void aim(Lighting& lighting, std::size_t light, const light_def_t& lamp, const Eigen::Vector3d& at) {
+void set_origin(Lighting& lighting, std::span<const light_def_t> lamps, const Eigen::Vector3d& origin_m) {
+  for (std::size_t i = 0; i < std::min(lighting.lights.size(), lamps.size()); ++i) {
+    const light_def_t lamp = about(lamps[i], origin_m);
+    lighting.lights[i].position.head<3>() = to_eigen(lamp.pose.position_m).cast<float>();
+    if (lighting.shadow_light == static_cast<int>(i)) lighting.shadow_clip = shadow_clip(lamp);
+  }
+}
+
+void aim(Lighting& lighting, std::size_t light, const light_def_t& lamp, const Eigen::Vector3d& at, const Eigen::Vector3d& origin_m) {
   const Eigen::Vector3d to = at - to_eigen(lamp.pose.position_m);
   if (light >= lighting.lights.size() || !(to.norm() > kMinAimDistance_m)) return;
-  light_def_t aimed = lamp;
+  light_def_t aimed = about(lamp, origin_m);
   aimed.direction = to_vec3(to.normalized());
   lighting.lights[light] = make_light(aimed);
   if (lighting.shadow_light == static_cast<int>(light)) lighting.shadow_clip = shadow_clip(aimed);

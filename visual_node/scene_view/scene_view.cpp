@@ -16,6 +16,7 @@
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
 #include "visual_node/scene_view/lighting.h"
+#include "visual_node/scene_view/repeated_place.h"
 
 namespace tactus::visual {
 namespace {
@@ -58,6 +59,7 @@ SceneView::SceneView(const scene_t& scene, const Meshes& meshes, const Settings&
       lens_(scene, settings, width_, height_),
       settings_(settings) {
   lighting_ = make_lighting(scene, settings);
+  lamps_.assign(scene.lights.begin(), scene.lights.begin() + static_cast<std::ptrdiff_t>(lighting_.lights.size()));
   appearance_ = make_appearance(scene, std::move(look_files));
   geometries_ = {unit_plane(), unit_box()};
   for (const int n : kSegments) geometries_.push_back(unit_sphere(n));
@@ -224,14 +226,13 @@ bool SceneView::shape(const shape_def_t& s, const Meshes& meshes, ShapePart& par
 
 bool SceneView::lamp_inside(const scene_t& scene, const ShapePart& part) const {
   if (lighting_.shadow_light < 0) return false;
-  const Eigen::Vector3f lamp =
-      lighting_.lights[static_cast<std::size_t>(lighting_.shadow_light)].position.head<3>();
+  const Eigen::Vector3d lamp = to_eigen(scene.lights[static_cast<std::size_t>(lighting_.shadow_light)].pose.position_m);
   const auto body = static_cast<std::size_t>(part.body);
   const Eigen::Isometry3d pose =
       (body < scene.bodies.size() ? to_eigen(scene.bodies[body].pose) : Eigen::Isometry3d::Identity()) *
       part.in_body;
   // Excludes shapes as large as a room, whose bounding sphere contains everything.
-  return part.radius_m < 0.5f && (pose.translation().cast<float>() - lamp).norm() < part.radius_m;
+  return part.radius_m < 0.5f && (pose.translation() - lamp).norm() < static_cast<double>(part.radius_m);
 }
 
 namespace {
@@ -253,9 +254,11 @@ SceneView::PlacedInstance SceneView::place(const ShapePart& part, const Eigen::I
   const Eigen::Quaternionf q(Eigen::Quaterniond(pose.linear()).cast<float>());
   PlacedInstance p{part.geometry, 0, part.casts_shadow, part.relief, part.look, part.instance};
   p.instance.orientation = q.coeffs();
-  p.instance.position.head<3>() = pose.translation().cast<float>();
+  p.instance.position.head<3>() = camera.about_origin(pose.translation());
   p.instance.body_orientation = Eigen::Quaternionf(Eigen::Quaterniond(body.linear()).cast<float>()).coeffs();
-  p.instance.body_position.head<3>() = body.translation().cast<float>();
+  p.instance.body_position.head<3>() = camera.about_origin(
+      part.relief < 0 ? Eigen::Vector3d(body.translation())
+                      : repeated_place(reliefs_[static_cast<std::size_t>(part.relief)].size_m.cast<double>(), body, camera.origin_m));
   if (part.body >= 0 && part.body < static_cast<int>(tints_.size()))
     add_tint(p.instance, tints_[static_cast<std::size_t>(part.body)]);
   p.distance_m = (p.instance.position.head<3>() - camera.eye).norm();
@@ -272,6 +275,8 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
   list.camera = lens_.camera(head);
   list.views = stereo_views(lens_, head, settings_);
   list.lighting = lighting_;
+  const Eigen::Vector3d& origin_m = list.camera.origin_m;
+  if (!origin_m.isZero(0)) set_origin(list.lighting, lamps_, origin_m);
   std::vector<PlacedInstance> opaque, translucent;
   const auto add = [&](const ShapePart& part, const Eigen::Isometry3d& pose) {
     const bool seen_through =
@@ -294,7 +299,7 @@ DrawList SceneView::draw(std::span<const Eigen::Isometry3d> bodies, std::span<co
     if (tools[i].known && !tools_[i].hidden) add(tools_[i].ghost, tools[i].device);
   for (std::size_t i = 0; i < std::min(tools.size(), tools_.size()); ++i)
     if (tools[i].known && tools_[i].light >= 0)
-      aim(list.lighting, static_cast<std::size_t>(tools_[i].light), tools_[i].lamp, tools[i].device.translation());
+      aim(list.lighting, static_cast<std::size_t>(tools_[i].light), tools_[i].lamp, tools[i].device.translation(), origin_m);
 
   // Planes and boxes have the lowest numbers and are mostly floors and walls: they are drawn last, to reduce
   // overdraw.

@@ -97,7 +97,8 @@ class SceneView {
   int width_, height_;
   Lens lens_;
   Settings settings_;
-  Lighting lighting_;
+  Lighting lighting_;                // about the origin of the world
+  std::vector<light_def_t> lamps_;  // of lighting_
   Appearance appearance_;
   std::vector<Triangles> geometries_;
   std::map<std::int64_t, int> mesh_geometry_;

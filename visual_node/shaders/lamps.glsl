@@ -1,6 +1,6 @@
 // Phong reflection in linear light, for the stage that evaluates it: per pixel, or per vertex (Gouraud).
 // gl/surface_program.cpp defines LIGHTS and, lamp by lamp, LAMPS for the scene: a software renderer pays for every
-// branch of every pixel. The stage provides `at` (m, world); all bool arguments in this file are compile-time
+// branch of every pixel. The stage provides `at` (m, about the origin of the picture); all bool arguments in this file are compile-time
 // constants.
 struct Light {       // struct Light in scene_view/draw_list.h
   vec4 position;

@@ -22,7 +22,7 @@ uniform mat4 shadow_from_world;  // to texture coordinates of the shadow map, be
 uniform vec3 eye;
 uniform float see_through;  // 1: the background shows through, 0: opaque
 
-out vec3 at;  // m, world
+out vec3 at;  // m, about the origin of the picture
 out vec3 facing;
 out vec4 shadow_at;
 flat out vec4 paint;    // diffuse colour and opacity

@@ -293,7 +293,7 @@ TEST_CASE("The callback allocates nothing, takes no lock and does no I/O for any
       }
       // The head turns, and the database changes from time to time.
       Listener listener;
-      listener.T_W_listener.rotate(Eigen::AngleAxisf(0.1f * static_cast<float>(i), Eigen::Vector3f::UnitZ()));
+      listener.T_W_listener.rotate(Eigen::AngleAxisd(0.1 * static_cast<double>(i), Eigen::Vector3d::UnitZ()));
       listener.nearest_m = 0.3f;
       queues.listeners.push(listener);
       if (i % 50 == 0) queues.recorded.databases.push(++database);

@@ -225,7 +225,7 @@ TEST_CASE("A strike on a nodal line excites no mode, and a strike at an unknown 
   lies.translation() = Eigen::Vector3d(1, 2, 3);
   lies.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
   const auto gains = [&](double x_of_length, double z_m = 0.0025) {
-    blow.point_m = to_vec3f(lies * Eigen::Vector3d((x_of_length - 0.5) * length, 0, z_m));
+    blow.point_m = to_vec3(lies * Eigen::Vector3d((x_of_length - 0.5) * length, 0, z_m));
     return all
         .strike(blow, {},
                 [&](int body) -> std::optional<Eigen::Isometry3d> {
@@ -320,6 +320,42 @@ TEST_CASE("No contact event gives a strike with values that are not finite") {
       CHECK(std::isfinite(side.click));
       CHECK(side.place.direction.allFinite());
       CHECK(side.place.distance_m >= 0.3f);
+    }
+  }
+}
+
+TEST_CASE("A blow 300 km from the origin sounds like the same blow at the origin") {
+  const Eigen::Vector3d far(3e5, -2e5, 1e5);
+  const auto moved_by = [](const Eigen::Vector3d& shift) {
+    scene_t s = scene();
+    for (body_def_t& b : s.bodies) b.pose = to_pose(Eigen::Isometry3d(Eigen::Translation3d(shift)));
+    s.listener = to_pose(Eigen::Isometry3d(Eigen::Translation3d(shift)));
+    return s;
+  };
+  const auto none = [](std::int64_t) { return std::optional<Extent>(); };
+  const Impacts near_impacts(moved_by(Eigen::Vector3d::Zero()), none, Settings{}, 48000, 1), far_impacts(moved_by(far), none, Settings{}, 48000, 1);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < 100; ++i) {
+    contact_event_t e = hit(0, 1, 1, 0.1f, 100);
+    e.normal.z = 1;
+    const Eigen::Vector3d place(u(random), u(random), u(random));
+    e.point_m = to_vec3(place);
+    const Strike here = near_impacts.strike(e, {});
+    e.point_m = to_vec3(Eigen::Vector3d(far + place));
+    const Strike there = far_impacts.strike(e, {});
+    REQUIRE(here.min_audible_gain < 1);
+    CHECK(there.min_audible_gain == Approx(here.min_audible_gain).epsilon(1e-5));
+    for (std::size_t k = 0; k < 2; ++k) {
+      CHECK(there.sides[k].impulse == Approx(here.sides[k].impulse).epsilon(1e-5));
+      CHECK((there.sides[k].place.direction - here.sides[k].place.direction).norm() < 1e-6f);
+      CHECK(there.sides[k].place.distance_m == Approx(here.sides[k].place.distance_m).epsilon(1e-6));
+      Listener ear;
+      ear.T_W_listener.translation() = far + Eigen::Vector3d(0.001, 0, 0);
+      Listener near_ear;
+      near_ear.T_W_listener.translation() = Eigen::Vector3d(0.001, 0, 0);
+      const SourcePosition a = relative_to_listener(near_ear, here.sides[k].place), b = relative_to_listener(ear, there.sides[k].place);
+      CHECK((a.direction - b.direction).norm() < 1e-5f);
     }
   }
 }

@@ -27,7 +27,7 @@ contact_t sliding(const Vector3d& velocity_m_s, double force_N, const Vector3d& 
   c.normal_force_N = static_cast<float>(force_N);
   c.sliding_velocity_m_s = to_vec3f(velocity_m_s);
   c.point_count = 1, c.points.resize(1);
-  c.points[0].a_body_m = to_vec3f(place_body);
+  c.points[0].a_body_m = to_vec3(place_body);
   return c;
 }
 
@@ -235,7 +235,7 @@ TEST_CASE(
     contact_t c = sliding({speed_m_s, 0, 0}, 2, {received_m, 0, 0});
     // The other corners of the body; from time to time another one is deepest.
     c.points.resize(2), c.point_count = 2;
-    c.points[1].a_body_m = to_vec3f(Vector3d(received_m + 0.1, 0.05, 0));
+    c.points[1].a_body_m = to_vec3(Vector3d(received_m + 0.1, 0.05, 0));
     if (ms % 34 >= 17) std::swap(c.points[0], c.points[1]);
     s = h.step(c).at(0);
     if (own_edge) continue;
@@ -283,7 +283,7 @@ TEST_CASE(
     c.rolling_velocity_m_s = to_vec3f(Vector3d(speed_m_s, 0, 0));
     c.points[0].a_world_m = c.points[0].a_body_m;
     c.points[0].b_body_m =
-        to_vec3f(turn(spin_rad_s * then, Vector3d::UnitY()).conjugate() * Vector3d(0, 0, -radius_m));
+        to_vec3(turn(spin_rad_s * then, Vector3d::UnitY()).conjugate() * Vector3d(0, 0, -radius_m));
     const auto all = h.step(c);
     REQUIRE(all.size() == (ms > 0 || !all.empty() ? 1 : 0));
     s = all[0];

@@ -130,13 +130,17 @@ TEST_CASE("A clipped recording is played and reported") {
   CHECK(read);
 }
 
-TEST_CASE("A truncated recording is read as far as possible") {
+TEST_CASE("A truncated recording is read as far as possible and reported") {
   const SoundFolder folder;
-  folder.write("a.wav", tone(200, 1));
-  std::filesystem::resize_file(folder.path() + "/a.wav", 100000);
-  bool read = false;
-  faults_of(folder.path() + "/a.wav", Interaction::kImpact, &read);
-  CHECK(read);
+  for (const std::string name : {"a.wav", "a.flac"}) {
+    CAPTURE(name);
+    folder.write(name, tone(200, 1));
+    CHECK(faults_of(folder.place(name), Interaction::kImpact).empty());
+    std::filesystem::resize_file(folder.place(name), std::filesystem::file_size(folder.place(name)) / 2);
+    bool read = false;
+    CHECK_THAT(faults_of(folder.place(name), Interaction::kImpact, &read), Catch::Contains("shorter than its header states"));
+    CHECK(read);
+  }
 }
 
 TEST_CASE("A recording that is a pipe, a device or another format inside is rejected at once") {

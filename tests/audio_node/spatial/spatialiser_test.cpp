@@ -140,7 +140,7 @@ TEST_CASE("A ringing body stays in place while the listener turns") {
   Strike strike = strike_of(1, 1, 2000, 5, 0);
   SourcePosition& place = strike.sides[0].place;
   place.direction = Eigen::Vector3f::UnitY();
-  place.source_m = 2 * Eigen::Vector3f::UnitY();
+  place.source_m = 2 * Eigen::Vector3d::UnitY();
   place.distance_m = 2;
   voices.strike(strike.sides[0], 1, strike.pulse, 0);
   const auto louder_left = [&] {
@@ -156,10 +156,10 @@ TEST_CASE("A ringing body stays in place while the listener turns") {
   };
   CHECK(louder_left() > 6);
   Listener listener;
-  listener.T_W_listener = Eigen::AngleAxisf(std::numbers::pi_v<float>, Eigen::Vector3f::UnitZ());
+  listener.T_W_listener = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ());
   voices.set_listener(listener);
   CHECK(louder_left() < -6);
-  listener.T_W_listener = Eigen::Translation3f(0, 4, 0) * listener.T_W_listener;  // it has walked past the source
+  listener.T_W_listener = Eigen::Translation3d(0, 4, 0) * listener.T_W_listener;  // it has walked past the source
   voices.set_listener(listener);
   CHECK(louder_left() > 6);
 }
@@ -251,7 +251,7 @@ struct Restruck {
   void strike(const Eigen::Vector3f& from, float distance_m, float impulse) {
     StrikeSide side = strike_of(1, 1, 440, 0, 0, impulse).sides[0];
     side.place = {from, distance_m};
-    side.place.source_m = distance_m * from;
+    side.place.source_m = (distance_m * from).cast<double>();
     voices.strike(side, 1, one_hump(1), 0);
   }
   void play(int blocks) {

@@ -63,9 +63,9 @@ contact_t contact(const scene_t& scene, int bar, int material, double went_m, bo
   // The mean of the velocities over both surfaces.
   c.rolling_velocity_m_s.x = static_cast<float>(rolls ? kSpeed_m_s : kSpeed_m_s / 2);
   contact_point_t p{};
-  p.a_world_m = p.b_world_m = to_vec3f(lies * on_bar);
-  (bar_first ? p.a_body_m : p.b_body_m) = to_vec3f(on_bar);
-  (bar_first ? p.b_body_m : p.a_body_m) = to_vec3f(on_tip);
+  p.a_world_m = p.b_world_m = to_vec3(lies * on_bar);
+  (bar_first ? p.a_body_m : p.b_body_m) = to_vec3(on_bar);
+  (bar_first ? p.b_body_m : p.a_body_m) = to_vec3(on_tip);
   c.point_count = 1, c.points = {p};
   return c;
 }

@@ -61,7 +61,8 @@ contact_event_t blow(const json& of) {
   contact_event_t event{};
   event.event_id = 1, event.kind = contact_event_t::HIT;
   event.body_a = 0, event.body_b = 1, event.tool = -1;
-  event.point_m = vec3f(of.at("point_m")), event.normal = vec3f(of.at("normal"));
+  event.point_m = {of.at("point_m").at(0), of.at("point_m").at(1), of.at("point_m").at(2)};
+  event.normal = vec3f(of.at("normal"));
   // A contact of about 30 us between hard bodies: one or two samples, so that it excites all audible modes.
   event.approach_speed_m_s = 1, event.effective_mass_kg = 0.001f, event.curvature_1_m = 500;
   return event;

@@ -155,7 +155,7 @@ struct Holding {
       tool_constraint_t& c = m.constraints.emplace_back();
       c.contact_id = p.contact_id;
       c.body = p.body;
-      c.point_m = to_vec3f(proxy - radius_m * n);
+      c.point_m = to_vec3(proxy - radius_m * n);
       c.force_N = to_vec3f(force);
       c.impulse_N_s = to_vec3(impulse);
       c.impulse_since_ns = since_ns;

@@ -46,7 +46,7 @@ touch_plane_t mapped(std::int64_t id, const Vector3d& x, double turned = 0,
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(turned, Vector3d::UnitZ()).toRotationMatrix();
   touch_plane_t p = plane(id, {x.x(), x.y(), 0}, Vector3d::UnitZ(), friction);
   p.material = 0;
-  p.point_body_m = to_vec3f(turn.transpose() * (Vector3d(x.x(), x.y(), 0) - origin));
+  p.point_body_m = to_vec3(turn.transpose() * (Vector3d(x.x(), x.y(), 0) - origin));
   p.normal_body = to_vec3f(Vector3d::UnitZ());
   p.bump_asset = 1;
   p.bump_u = to_vec3f(turn * Vector3d::UnitX());
@@ -129,7 +129,7 @@ TEST_CASE("Every touched plane has its own relief") {
     corner.renderer.set_maps(waves());
     touch_plane_t wall = plane(20, {0.02, 0, 0}, -Vector3d::UnitX());
     wall.material = 0, wall.bump_asset = 1;
-    wall.point_body_m = to_vec3f(Vector3d(0.02, 0.003, 0.004)),
+    wall.point_body_m = to_vec3(Vector3d(0.02, 0.003, 0.004)),
     wall.point_m = to_vec3(Vector3d(0.02, 0.003, 0.004));
     wall.normal_body = to_vec3f(-Vector3d::UnitX());
     wall.bump_u = to_vec3f(Vector3d::UnitY());  // a wall across x: (y, z)

@@ -39,6 +39,7 @@ TEST_CASE("An error in a motion file is reported with its line") {
   CHECK_THROWS_WITH(read(""), Contains("stroke.csv, line 1") && Contains("time_s,x_m,y_m,z_m"));
   CHECK_THROWS_WITH(read("t,x,y,z\n"), Contains("line 1"));
   CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n"), Contains("no row"));
+  CHECK_THROWS_WITH(read(std::string("time_s,x_m,y_m,z_m\n0,0,0,1\0 2\n", 30)), Contains("line 2") && Contains("byte 0"));
   CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0,0\n1,0,zero,0\n"), Contains("line 3") && Contains("\"zero\""));
   CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0\n"), Contains("line 2") && Contains("3 columns"));
   CHECK_THROWS_WITH(read("time_s,x_m,y_m,z_m\n0,0,0,nan\n"), Contains("line 2"));

@@ -332,3 +332,24 @@ TEST_CASE("A quantised force fades to zero after the touch model is lost") {
   }
   CHECK(bench.tick(200, {0, 0, 0.002}, nullptr, {}, in).force_N.norm() == 0);
 }
+
+TEST_CASE("A surface 300 km from the origin feels like the same surface at the origin") {
+  const Vector3d far(3e5 + 0.0123, -2e5 - 0.0321, 1e5 + 0.0077), normal = Vector3d(0.3, -0.2, 1).normalized();
+  Bench near_bench, far_bench;
+  // A step of a double at 3e5 m is 6e-11 m. A place is the sum of a few, and a velocity is their difference over 1 ms.
+  const double bound_N = 1e-9 * wall_stiffness({}) + 20 * 6e-8;
+  int touching = 0;
+  for (int ms = 0; ms < 500; ++ms) {
+    const Vector3d device(0.01 * std::sin(0.02 * ms), 0.005 * std::cos(0.013 * ms), 0.004 + 0.003 * std::sin(0.03 * ms));
+    const auto m = model(ms, {plane(7, Vector3d::Zero(), normal, 0.4)}), moved = model(ms, {plane(7, far, normal, 0.4)});
+    const TickOutput& here = near_bench.tick(ms, device, &m);
+    const TickOutput& there = far_bench.tick(ms, far + device, &moved);
+    REQUIRE((here.force_N - there.force_N).norm() < bound_N);
+    REQUIRE(here.state.constraints.size() == there.state.constraints.size());
+    for (std::size_t i = 0; i < here.state.constraints.size(); ++i) {
+      ++touching;
+      REQUIRE((to_eigen(there.state.constraints[i].point_m) - far - to_eigen(here.state.constraints[i].point_m)).norm() < 1e-9);
+    }
+  }
+  CHECK(touching > 100);
+}

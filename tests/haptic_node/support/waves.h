@@ -30,7 +30,7 @@ inline std::shared_ptr<const SurfaceMaps> waves(double height_m) {
 inline void add_map(touch_plane_t& plane) {
   plane.material = 0;
   plane.bump_asset = 1;
-  plane.point_body_m = to_vec3f(to_eigen(plane.point_m));
+  plane.point_body_m = plane.point_m;
   plane.normal_body = to_vec3f(Eigen::Vector3d::UnitZ());
   plane.bump_u = to_vec3f(Eigen::Vector3d::UnitX());
 }

@@ -279,3 +279,17 @@ TEST_CASE("Surfaces that oscillate within the hysteresis keep one contact") {
     CHECK(tracker.live().empty());
   }
 }
+
+TEST_CASE("A ball that falls 300 km from the origin hits at its exact place") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  const Vector3d above(3e5 + 0.0123, -2e5 - 0.0321, 0.08);
+  add_ball(w, 0.2, 0.03, above);
+  Tracked t(w, by("impulse"));
+  t.run(0.3);
+  REQUIRE(t.of_kind(contact_event_t::HIT).size() == 1);
+  const contact_event_t hit = t.of_kind(contact_event_t::HIT)[0];
+  // Tens of steps, each of which rounds to 6e-11 m.
+  CHECK(hit.point_m.x == Approx(above.x()).margin(1e-7));
+  CHECK(hit.point_m.y == Approx(above.y()).margin(1e-7));
+}

@@ -1,5 +1,7 @@
 #include "sim_node/scene/inertial.h"
 
+#include <algorithm>
+
 #include "tests/sim_node/support/scene_file.h"
 
 using namespace tactus::sim;
@@ -16,7 +18,65 @@ std::string inertia(double x, double y, double z) {
   return "<inertia><ixx>" + std::to_string(x) + "</ixx><iyy>" + std::to_string(y) + "</iyy><izz>" + std::to_string(z) +
          "</izz></inertia>";
 }
+
+// An L of 3 litres: corners of its outline, and a file in which its faces are polygons, divided or reversed.
+std::string l_shape(bool divided, bool reversed) {
+  constexpr double kOutline[6][2] = {{0, 0}, {0.2, 0}, {0.2, 0.1}, {0.1, 0.1}, {0.1, 0.2}, {0, 0.2}};
+  std::string text;
+  for (const double z : {0.0, 0.1})
+    for (const auto& p : kOutline) text += "v " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(z) + "\n";
+  const auto face = [&](std::vector<int> corners) {
+    if (reversed) std::reverse(corners.begin(), corners.end());
+    text += "f";
+    for (const int c : corners) text += " " + std::to_string(c);
+    text += "\n";
+  };
+  if (divided) {
+    // From the inner corner, from which the whole outline is visible.
+    for (const auto& [a, b] : {std::pair{5, 6}, std::pair{6, 1}, std::pair{1, 2}, std::pair{2, 3}}) face({10, a + 6, b + 6}), face({4, b, a});
+  } else {
+    face({7, 8, 9, 10, 11, 12});
+    face({6, 5, 4, 3, 2, 1});
+  }
+  for (int a = 1; a <= 6; ++a) {
+    const int b = a % 6 + 1;
+    if (divided)
+      face({a, b, b + 6}), face({a, b + 6, a + 6});
+    else
+      face({a, b, b + 6, a + 6});
+  }
+  return text;
+}
 }  // namespace
+
+TEST_CASE("An L of oak weighs 2.25 kg inside out, mirrored and with concave polygons") {
+  for (const bool divided : {true, false})
+    for (const bool reversed : {true, false})
+      for (const char* scale : {"1 1 1", "1 1 -1", "-1 -1 -1"}) {
+        INFO(divided << ' ' << reversed << ' ' << scale);
+        SceneFile file(link("<tactus:surface material='oak'/>" +
+                            collision("<mesh><uri>l.obj</uri><scale>" + std::string(scale) + "</scale></mesh>")));
+        file.write("l.obj", l_shape(divided, reversed));
+        CHECK(file.load().bodies.front().mass_kg == Approx(2.25).epsilon(1e-6));
+        CHECK(file.warnings.empty());
+      }
+}
+
+TEST_CASE("The mass of an open mesh is reported with its line, unless mass and inertia are given") {
+  const std::string mesh = collision("<mesh><uri>l.obj</uri></mesh>");
+  std::string open = l_shape(true, false);
+  open.erase(open.rfind("f "));
+  SceneFile file(link("<tactus:surface material='oak'/>" + mesh));
+  file.write("l.obj", open);
+  CHECK(file.load().bodies.front().mass_kg == Approx(2.25).epsilon(1e-6));
+  REQUIRE(file.warnings.size() == 1);
+  CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("mesh \"c\", which is open (3 edges") &&
+                                           Catch::Contains("for the mass and the inertia"));
+  SceneFile given(link(inertial("<mass>1</mass>" + inertia(1, 1, 1)) + mesh));
+  given.write("l.obj", open);
+  given.load();
+  CHECK(given.warnings.empty());
+}
 
 TEST_CASE("Mass and inertia are used as given at their own pose") {
   const BodyDef b = body(inertial("<pose>0.1 0 0 0 0 1.5707963267948966</pose><mass>2</mass>" + inertia(1, 2, 2.5)) + kBall);

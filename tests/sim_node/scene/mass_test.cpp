@@ -96,7 +96,7 @@ TEST_CASE("A body of two boxes equals one box of twice the length") {
   CHECK((a.inertia_kg_m2 - b.inertia_kg_m2).norm() < 1e-12);
 }
 
-TEST_CASE("An open or inverted mesh has the mass of its bounding box") {
+TEST_CASE("A sheet has the mass of its bounding box, which is reported") {
   WorldDef w = world_of_density(1000);
   TriangleMesh sheet;
   sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -105,7 +105,10 @@ TEST_CASE("An open or inverted mesh has the mass of its bounding box") {
   ShapeDef s = shape(ShapeKind::kMesh, {1, 1, 1});
   s.mesh = 0;
   bool dense = false;
-  const MassProperties m = mass_of(w, std::span(&s, 1), dense);
+  std::vector<MassRemark> remarks;
+  const MassProperties m = mass_of(w, std::span(&s, 1), dense, &remarks);
   CHECK(m.mass_kg == Approx(0.1));  // 1 m x 1 m x 0.1 mm
+  REQUIRE(remarks.size() == 1);
+  CHECK_THAT(remarks[0].clause, Catch::Contains("bounding box"));
   CHECK(m.inertia_kg_m2.ldlt().isPositive());
 }

@@ -65,7 +65,7 @@ struct Hand {
       tool_constraint_t c{};
       c.contact_id = p.contact_id;
       c.body = p.body;
-      c.point_m = to_vec3f(proxy + to_eigen(p.tool_point_m) - skin(p) * n);
+      c.point_m = to_vec3(proxy + to_eigen(p.tool_point_m) - skin(p) * n);
       c.force_N = to_vec3f(Eigen::Vector3d(stiffness * std::max(0.0, depth) * n));
       c.impulse_N_s = to_vec3(impulses[p.contact_id]);
       c.impulse_since_ns = begun_ns[p.contact_id];

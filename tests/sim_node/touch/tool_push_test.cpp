@@ -49,7 +49,7 @@ struct Process {
     tool_constraint_t c{};
     c.contact_id = contact;
     c.body = body;
-    c.point_m = to_vec3f(point);
+    c.point_m = to_vec3(point);
     c.force_N = to_vec3f(force_N);
     c.impulse_N_s = to_vec3(sum.reported);
     c.impulse_since_ns = sum.since_ns;

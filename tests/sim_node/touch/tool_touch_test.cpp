@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 #include <tactus/contact_event_t.hpp>
+#include <tactus/contact_point_t.hpp>
+#include <tactus/contact_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
@@ -145,4 +147,28 @@ TEST_CASE("The near surfaces of a tool are the same whether it renders a late mo
     const auto expected = near(fresh.at(p, SampleStatus::kExact, v));
     CHECK(near(late.at(p, SampleStatus::kHeld, v)) == expected);
   }
+}
+
+TEST_CASE("Places 300 km from the origin are exact in the touch model, the contacts and the events of a tool") {
+  WorldDef w = empty_world();
+  add_floor(w);
+  const Vector3d place(3e5 + 0.0123, -2e5 - 0.0321, kRadius_m), below(place.x(), place.y(), 0);
+  add_tool(w, place);
+  Bench bench(w);
+  tool_state_t m{};
+  m.device.position_m = m.proxy.position_m = to_vec3(place);
+  m.device.orientation.w = m.proxy.orientation.w = 1;
+  std::vector<contact_event_t> events;
+  bench.touch.update(bench.now, bench.bodies, std::vector{m}, events);
+  REQUIRE(bench.touch.model().plane_count == 1);
+  const touch_plane_t& plane = bench.touch.model().planes[0];
+  CHECK((to_eigen(plane.point_m) - below).norm() < 1e-9);
+  CHECK((to_eigen(plane.point_body_m) - below).norm() < 1e-9);
+  REQUIRE(events.size() == 1);
+  CHECK((to_eigen(events[0].point_m) - below).norm() < 1e-9);
+  std::vector<contact_t> contacts;
+  bench.touch.describe(bench.bodies, contacts);
+  REQUIRE(contacts.size() == 1);
+  for (const vec3_t& p : {contacts[0].points[0].a_world_m, contacts[0].points[0].b_world_m, contacts[0].points[0].a_body_m})
+    CHECK((to_eigen(p) - below).norm() < 1e-9);
 }

@@ -115,6 +115,7 @@ void append_number(Bytes& out, Number value) {
   out.insert(out.end(), raw.rbegin(), raw.rend());  // big-endian
 }
 void append_vector(Bytes& out, const vec3f_t& v) { append_number(out, v.x), append_number(out, v.y), append_number(out, v.z); }
+void append_vector(Bytes& out, const vec3_t& v) { append_number(out, v.x), append_number(out, v.y), append_number(out, v.z); }
 vec3f_t single(const vec3_t& v) {
   vec3f_t f{};
   f.x = static_cast<float>(v.x), f.y = static_cast<float>(v.y), f.z = static_cast<float>(v.z);
@@ -122,7 +123,7 @@ vec3f_t single(const vec3_t& v) {
 }
 
 // Messages of the release in which cumulative impulses had single precision. The changed lists are the last fields.
-constexpr std::size_t kConstraintBytes = 68, kAppliedBytes = 40;
+constexpr std::size_t kConstraintBytes = 80, kAppliedBytes = 40;
 Bytes in_single_precision(const tool_state_t& m) {
   Bytes bytes = with_fingerprint(sync::encode(m), kOldFingerprint);
   bytes.resize(bytes.size() - kConstraintBytes * m.constraints.size());

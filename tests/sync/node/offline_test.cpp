@@ -1,6 +1,7 @@
 // Tests of rendering a log offline: profiles, ticks, progress and output files.
 #include "sync/bus/bus.h"
 #include "sync/node/offline.h"
+#include "sync/node/run_renderer.h"
 
 #include <unistd.h>
 
@@ -187,4 +188,45 @@ TEST_CASE("A file gets its final name only when it is complete") {
     full.write("x");
     CHECK_THROWS_WITH(full.finish(), Contains("free disk space"));
   }
+}
+
+namespace {
+
+// A node that renders a log to nothing, and that may not be made.
+class CheckedFactory : public RendererFactory {
+ public:
+  void add_options(Arguments& app) override { options_.add_to(app, "renders a log", "--presented"); }
+  OfflineInput* prepare(const NodeOptions&) override {
+    input_ = std::make_unique<OfflineInput>(options_, std::vector<OfflineInput::Written>{}, kRate_Hz, host_time(0));
+    return input_.get();
+  }
+  std::unique_ptr<Renderer> make(RendererHost&) override { throw std::runtime_error("a check makes no renderer"); }
+
+ private:
+  OfflineOptions options_;
+  std::unique_ptr<OfflineInput> input_;
+};
+
+int checked(std::vector<std::string> words) {
+  words.insert(words.begin(), "test_node");
+  words.push_back("--check");
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  CheckedFactory factory;
+  return run_renderer({.name = "test_node", .modality = "test", .rate_Hz = kRate_Hz, .about = "A test."}, factory,
+                      static_cast<int>(argv.size()), argv.data());
+}
+
+}  // namespace
+
+TEST_CASE("A check of a node with a log leaves no file, and a missing file is an error") {
+  const Folder folder;
+  const std::string log = log_in(folder);
+  CHECK(checked({"--log", log, "--presented", folder.file("out.csv")}) == 0);
+  CHECK_FALSE(std::filesystem::exists(folder.file("out.csv")));
+  CHECK_FALSE(std::filesystem::exists(folder.file("out.csv.part")));
+  CHECK(checked({"--log", folder.file("missing.lcmlog"), "--presented", folder.file("out.csv")}) == 1);
+  CHECK(checked({"--log", log, "--presented", folder.file("none/out.csv")}) == 1);
+  CHECK(checked({"--log", log, "--presented", folder.file("out.csv"), "--degrade", folder.file("missing.xml")}) == 1);
+  CHECK_FALSE(std::filesystem::exists(folder.file("out.csv.part")));
 }

@@ -1,6 +1,7 @@
 #include "visual_node/lens/camera.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -54,4 +55,21 @@ TEST_CASE("The view of a lamp is centred on its axis for every direction") {
         look_along(lamp, direction) * (lamp + 2 * direction.normalized()).cast<float>().homogeneous();
     CHECK((eye.head<3>() - Eigen::Vector3f(0, 0, -2)).norm() < kRounding);
   }
+}
+
+TEST_CASE("A camera 300 km from the origin sees as exactly as one at the origin") {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d away = 3e5 * Eigen::Vector3d(u(random), u(random), u(random));
+    const Eigen::Isometry3d pose = Eigen::Translation3d(away) * Eigen::Quaterniond::UnitRandom();
+    const Camera c = make_camera(pose, 1, 640, 480, 0.1, 100), origin = make_camera(Eigen::Isometry3d::Identity(), 1, 640, 480, 0.1, 100);
+    CHECK(c.eye.cwiseAbs().maxCoeff() <= 32);
+    const Eigen::Vector3d in_camera(2 + u(random), u(random), u(random));
+    // A place has a step of 4 um about the origin of the picture, which is 2e-6 of the distance of at least 1 m.
+    CHECK((ndc(c, c.about_origin(pose * in_camera)) - ndc(origin, in_camera.cast<float>())).norm() < 2e-4f);
+  }
+  CHECK(drawing_origin({31, -31, 31.9}).isZero(0));
+  CHECK(drawing_origin({33, 0, -100}) == Eigen::Vector3d(64, 0, -128));
+  CHECK(drawing_origin(Eigen::Vector3d::Constant(std::nan(""))).isZero(0));
 }

@@ -34,7 +34,7 @@ struct SmallRoom {
     scene.camera = to_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 2) *
                                              Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitY())));
   }
-  std::optional<Eigen::Vector3f> hit(float x, float y, const std::string& stereo = "off") const {
+  std::optional<Eigen::Vector3d> hit(float x, float y, const std::string& stereo = "off") const {
     Settings settings;
     settings.stereo = stereo;
     const SceneView view(scene, {}, settings);
@@ -57,10 +57,10 @@ TEST_CASE("The mouse points at the visible surface under it") {
   };
   const auto on_box = room.hit(share(-0.5, 1.8), 0.5f);
   REQUIRE(on_box);
-  CHECK(on_box->isApprox(Eigen::Vector3f(0, -0.5f, 0.2f), 1e-3f));
+  CHECK(on_box->isApprox(Eigen::Vector3d(0, -0.5, 0.2), 1e-3));
   const auto beside = room.hit(share(0.5, 2), 0.5f);
   REQUIRE(beside);
-  CHECK(beside->isApprox(Eigen::Vector3f(0, 0.5f, 0), 1e-3f));
+  CHECK(beside->isApprox(Eigen::Vector3d(0, 0.5, 0), 1e-3));
   CHECK_FALSE(room.hit(-0.2f, 0.5f));
   CHECK_FALSE(room.hit(std::nanf(""), 0.5f));
 }
@@ -79,7 +79,7 @@ TEST_CASE("The mouse points at a ball up to its edge and at the floor beside it"
         return room.hit(static_cast<float>(0.5 - y_m * scale),
                         static_cast<float>(0.5 - (0.5 + up_m) * scale * 640 / 480));
       };
-      const Eigen::Vector3f middle(0.5f, static_cast<float>(y_m), static_cast<float>(radius_m));
+      const Eigen::Vector3d middle(0.5, y_m, radius_m);
       const auto on = hit_beside(0.9 * radius_m), beside = hit_beside(1.5 * radius_m);
       REQUIRE(on);
       REQUIRE(beside);
