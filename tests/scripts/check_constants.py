@@ -36,7 +36,7 @@ TABLES = {
         (("name", "=surface"), ("friction_static", "friction_dynamic", "restitution"), "surface_source"),
         (("name", "=thermal"), ("conductivity_W_mK", "specific_heat_J_kgK", "temperature_degC"), "thermal_source")],
 }
-# CSV files without constants of nature or of people, and what they are.
+# CSV files of other content than constants, with that content.
 OTHER = {
     "*/modality.csv": "limits of operators",
     "docs/constants.csv": "this register",
