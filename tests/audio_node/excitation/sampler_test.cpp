@@ -120,7 +120,7 @@ std::vector<float> blows_by(const std::vector<std::string>& methods) {
   for (const std::string& method : methods) {
     w.sampler.configure(with(method));
     if (method != "none") {
-      Strike s = w.strike(hit(1, 0.1));
+      Strike s = w.strike(hit(1, 0.2));
       s.scheduled = sync::host_time(at);
       REQUIRE(bench->queues.strikes.push(s));
     }
