@@ -127,15 +127,16 @@ TEST_CASE("The strength of sliding is the root of the friction power") {
 }
 
 TEST_CASE("The level of the reference stroke is its expected pressure, in proportion or compressed by loudness_exponent") {
-  // Twice the force per slope, and so twice the expected pressure.
   const double exponent = GENERATE(1.0, 0.6);
-  const auto strength_at = [&](double force_N) {
+  const auto strength_at = [&](double force_N, double friction_level) {
     Settings settings;
-    settings.scrape_force_N = force_N, settings.loudness_exponent = exponent;
+    settings.scrape_force_N = force_N, settings.loudness_exponent = exponent, settings.friction_level = friction_level;
     SlidingBench h(board(true), wavy_surfaces(), settings);
     return static_cast<double>(h.step(sliding({0, 0.1, 0}, 1, {0.005, 0.003, 0})).at(0).slide);
   };
-  CHECK(strength_at(80) / strength_at(40) == Approx(std::pow(2, exponent)).epsilon(1e-4));
+  // Twice the force per slope, and so twice the expected pressure; twice the level of friction is the same.
+  CHECK(strength_at(80, 16) / strength_at(40, 16) == Approx(std::pow(2, exponent)).epsilon(1e-4));
+  CHECK(strength_at(40, 16) / strength_at(40, 8) == Approx(std::pow(2, exponent)).epsilon(1e-4));
 }
 
 TEST_CASE("A contact that rests under load is silent although it jitters, and sliding is audible at once") {
