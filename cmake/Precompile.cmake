@@ -1,5 +1,5 @@
 # Precompiles the headers that nearly every file includes, because parsing them takes a large part of a full build: once for libraries and
-# programs, and once more, with Catch2, for tests. Each file still includes the headers that it uses; the presets release, asan and tsan,
+# programs, and once more, with Catch2, for tests. Each file still includes the headers that it uses; the presets release and tsan,
 # which precompile nothing, check this. With precompiled headers GCC 12 reports false out-of-bounds string operations (GCC bug 105651), so
 # these warnings are off here.
 option(TACTUS_PRECOMPILE "Read common headers once" ON)

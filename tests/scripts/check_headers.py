@@ -6,15 +6,19 @@
 Without HEADER it compiles every header that no source file includes first: the presets without precompiled headers and groups of files
 (release, asan, tsan) show the faults of the others. Needs a configured build. Exit status 1: a header does not compile.
 """
+import os
+import sys
+
+if __name__ == "__main__" and not sys.flags.isolated:  # started as `python3 FILE`: never imports from PYTHONPATH
+    os.execv(sys.executable, [sys.executable, "-I", *sys.argv])
+
 import argparse
 import concurrent.futures
 import json
-import os
 import pathlib
 import re
 import shlex
 import subprocess
-import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SKIPPED_FOLDERS = {"build", "out", "node_modules", ".git"}

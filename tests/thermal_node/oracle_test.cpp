@@ -14,12 +14,12 @@ using oracle::Touch;
 
 namespace {
 
-struct Material {
+struct ReferenceMaterial {
   const char* name;
   double conductivity, density, specific_heat;
   double heat_capacity() const { return density * specific_heat; }
 };
-const Material kMaterials[] = {{"copper", 401, 8933, 385},
+const ReferenceMaterial kReferenceMaterials[] = {{"copper", 401, 8933, 385},
                                {"steel", 60.5, 7850, 434},
                                {"granite", 2.79, 2630, 775},
                                {"oak", 0.16, 750, 1255},
@@ -34,7 +34,7 @@ Slab deep(double conductivity, double heat_capacity) {
 }  // namespace
 
 TEST_CASE("The oracle itself is within 1 mK of the closed form of two half-spaces") {
-  for (const Material& m : kMaterials) {
+  for (const ReferenceMaterial& m : kReferenceMaterials) {
     const double h = contact_conductance_W_m2K(m.conductivity);
     const test::SteadyContact exact{effusivity(0.37, 1000, 3770), effusivity(m.conductivity, m.density, m.specific_heat),
                               h, 33, 23};
@@ -48,7 +48,7 @@ TEST_CASE("The oracle itself is within 1 mK of the closed form of two half-space
 }
 
 TEST_CASE("Half-spaces with blood and air are within 10 mK of the oracle") {
-  for (const Material& m : kMaterials) {
+  for (const ReferenceMaterial& m : kReferenceMaterials) {
     const double h = contact_conductance_W_m2K(m.conductivity);
     SkinModel skin(SkinProperties{});
     skin.set_object({23, effusivity(m.conductivity, m.density, m.specific_heat)});
@@ -71,7 +71,7 @@ TEST_CASE("Tissue layers on objects of any thickness are within 10 mK of the ora
   const char* site = GENERATE("finger", "palm");
   const double thickness = GENERATE(0.0005, 0.01, 1e9);
   const Tissue tissue{layers_of(site), 33, 23, 0.0025, 8};
-  for (const Material& m : kMaterials) {
+  for (const ReferenceMaterial& m : kReferenceMaterials) {
     const double h = contact_conductance_W_m2K(m.conductivity);
     BioheatModel skin(tissue);
     skin.set_object({23, 0, m.conductivity, m.heat_capacity(), thickness});

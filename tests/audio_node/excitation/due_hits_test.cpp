@@ -25,7 +25,7 @@ struct Loop {
   std::vector<std::int64_t> struck, dropped;
   std::vector<sync::HostTime> scheduled;
 
-  void push(std::int64_t id, int due_ms, std::int8_t kind = contact_event_t::HIT) {
+  void push(std::int64_t id, int at_ms, std::int8_t kind = contact_event_t::HIT) {
     contact_events_t m{};
     m.header.run_id = m.header.incarnation = 1;
     m.header.seq = seq++;
@@ -34,7 +34,7 @@ struct Loop {
     contact_event_t e{};
     e.event_id = id;
     e.kind = kind;
-    e.time_ns = (due_ms * kMillisecond).count();
+    e.time_ns = (at_ms * kMillisecond).count();
     m.events.push_back(e);
     m.count = 1;
     inbox.push(m, due_ms(0));

@@ -27,7 +27,7 @@ struct Setup {
   int channels = 2;
 };
 
-std::vector<float> played(std::vector<float> x, const Setup& s) {
+std::vector<float> limited(std::vector<float> x, const Setup& s) {
   LevelLimiter limiter(s.def, s.rate_Hz, s.channels);
   const int frames = static_cast<int>(x.size()) / s.channels;
   for (int done = 0; done < frames; done += 77)
@@ -93,7 +93,7 @@ TEST_CASE("No second is louder than the limit: tones, bursts, blows, steps and n
   std::mt19937 random(11);
   for (int trial = 0; trial < 60; ++trial) {
     const Setup s{{100, 85, trial % 2 == 0}, 48000, trial % 3 ? 2 : 1};
-    const auto in = any_sound(s, random), out = played(in, s);
+    const auto in = any_sound(s, random), out = limited(in, s);
     CAPTURE(trial, loudest_dBA(in, s));
     CHECK(loudest_dBA(out, s) <= s.def.limit_dB + kRounding_dB);
   }
@@ -109,7 +109,7 @@ TEST_CASE("No second is louder than the limit, for any setting in its range") {
     const Setup s{{uniform(70, 130), uniform(40, 100), random() % 2 == 0},
                   rates_Hz[random() % 5],
                   1 + static_cast<int>(random() % 3)};
-    const auto in = any_sound(s, random), out = played(in, s);
+    const auto in = any_sound(s, random), out = limited(in, s);
     CAPTURE(trial, s.def.full_scale_dB, s.def.limit_dB, s.rate_Hz, s.channels, s.def.ears, loudest_dBA(in, s));
     CHECK(loudest_dBA(out, s) <= s.def.limit_dB + kRounding_dB);
     CHECK(std::all_of(out.begin(), out.end(), [](float y) { return std::abs(y) <= 1; }));  // false for NaN
@@ -126,7 +126,7 @@ TEST_CASE("The limit holds for samples with random bits, and the gain recovers")
   }
   const auto quiet = in_all_channels(s, 6, [](double t) { return 0.003 * std::sin(2 * pi * 500 * t); });
   x.insert(x.end(), quiet.begin(), quiet.end());
-  const auto out = played(x, s);
+  const auto out = limited(x, s);
   CHECK(loudest_dBA(out, s) <= s.def.limit_dB + kRounding_dB);
   CHECK(std::equal(out.end() - 48000, out.end(), x.end() - 48000));
 }
@@ -139,7 +139,7 @@ TEST_CASE("Sound that is cut at any moment stays within the limit") {
                  cut_s = 0.5 + static_cast<double>(random() % 1000) * 1e-3;
     auto x = in_all_channels(s, 2, [&](double t) { return t < cut_s ? std::sin(2 * pi * f * t) : 0; });
     CAPTURE(f, cut_s);
-    CHECK(loudest_dBA(played(x, s), s) <= s.def.limit_dB + kRounding_dB);
+    CHECK(loudest_dBA(limited(x, s), s) <= s.def.limit_dB + kRounding_dB);
   }
 }
 

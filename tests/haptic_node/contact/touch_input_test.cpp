@@ -3,12 +3,13 @@
 #include <catch2/catch.hpp>
 #include <tactus/touch_model_t.hpp>
 
+#include "tests/haptic_node/support/tick.h"
+
 using namespace tactus;
 using namespace tactus::haptic;
+using tactus::haptic::test::kMs;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 touch_model_t model_at(std::int64_t ms) {
   touch_model_t m{};

@@ -9,10 +9,10 @@
 
 #include "haptic_node/contact/touch_model_view.h"
 #include "sim_node/publish/touch_pages.h"
+#include "tests/haptic_node/support/tick.h"
 
 namespace tactus::haptic::test {
 
-inline constexpr std::int64_t kMs = 1'000'000;
 
 // A model in which every plane and every applied impulse identifies its step.
 inline touch_model_t whole_model(std::int64_t step, std::size_t planes, std::size_t applied_count) {

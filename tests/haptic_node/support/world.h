@@ -12,12 +12,12 @@
 #include "haptic_node/rendering/renderer.h"
 #include "haptic_node/contact/surfaces.h"
 #include "lcmtypes/vectors.h"
+#include "tests/haptic_node/support/tick.h"
 
 namespace tactus::haptic::test {
 
 using Eigen::Vector3d;
 
-inline constexpr std::int64_t kMs = 1'000'000;
 // Host time at which simulated time is zero.
 inline constexpr std::int64_t kStart = 5'000 * kMs;
 inline sync::HostTime host_ms(double ms) { return sync::host_time(kStart + static_cast<std::int64_t>(ms * 1e6)); }

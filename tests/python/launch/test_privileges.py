@@ -1,6 +1,7 @@
 """Tests of the rights of nodes, as the kernel states them in /proc/PID/status of a child."""
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -78,9 +79,9 @@ class Rights(unittest.TestCase):
                 services.end_or_kill([service], 0.1)
                 holder.terminate()
                 holder.wait()
-                for path in sorted(folder.rglob("*"), reverse=True):
-                    path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
-                folder.rmdir()
+                # Ended supervisors may still be writing into it.
+                services.wait_until(lambda: shutil.rmtree(folder, ignore_errors=True) or not folder.exists(), 20)
+                self.assertFalse(folder.exists())
 
 
 class Needed(unittest.TestCase):

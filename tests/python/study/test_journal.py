@@ -1,6 +1,7 @@
 """The journal of a participant: no answer is lost or asked twice, however the session ends."""
 import fcntl
 import json
+import os
 import pathlib
 import random
 import signal
@@ -17,6 +18,7 @@ from tactus.study import journal, session, study_file
 from tactus.study.journal import Journal
 from tactus.study.plan import Plan
 
+MEMORY = "/dev/shm"
 SESSION = {"study": "s", "study_sha256": "00", "participant": "P01", "seed": 7, "observer": "simulated"}
 STUDY = """<study name="random" version="1" scene="single_taps.sdf" task="{task}" seed="{seed}">
   <conditions>{conditions}</conditions>
@@ -47,7 +49,7 @@ def trial(number, missed="", yes=True, level=1.5, condition="audio-visual", **mo
 
 class Folder(unittest.TestCase):
     def setUp(self):
-        kept = tempfile.TemporaryDirectory()
+        kept = tempfile.TemporaryDirectory(dir=MEMORY if os.path.isdir(MEMORY) else None)  # every entry is synced, which a disk takes milliseconds for
         self.addCleanup(kept.cleanup)
         self.folder = pathlib.Path(kept.name) / "s" / "P01"
         self.path = self.folder / journal.NAME

@@ -2,6 +2,8 @@
 import json
 import os
 import pathlib
+import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -96,9 +98,24 @@ class Runners(unittest.TestCase):
         job = self.script("sleeps", '#!/bin/sh\nsleep 100\n')
         with mock.patch.object(runners, "JOB", [job]):
             runner = runners.Parallel(self.folder("out"), [1, 2, 3], 2)
+            self.assertFalse(runner.poll())
             runner.end()
         self.assertEqual([True, True], [job.returncode is not None for job in runner.running])
         self.assertEqual([], runner.waiting)
+
+    def test_an_interrupt_while_a_job_starts_leaves_no_unknown_process(self):
+        job = self.script("sleeps", '#!/bin/sh\nsleep 100\n')
+        started, popen = [], subprocess.Popen
+
+        def interrupted(*words, **options):
+            started.append(popen(*words, **options))
+            os.kill(os.getpid(), signal.SIGINT)
+            return started[-1]
+        with mock.patch.object(runners, "JOB", [job]), mock.patch.object(runners.subprocess, "Popen", interrupted):
+            runner = runners.Parallel(self.folder("out"), [1, 2], 2)
+            self.assertRaises(KeyboardInterrupt, runner.poll)
+            runner.end()
+        self.assertEqual([True], [process.poll() is not None for process in started])
 
 
 if __name__ == "__main__":

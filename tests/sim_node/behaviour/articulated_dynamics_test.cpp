@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t index_of(int i) { return static_cast<std::size_t>(i); }
 
 // Inverse dynamics in the classical form (Newton and Euler for each link, in three dimensions), independent of the
 // algorithm under test: the joint forces that these accelerations require, and for a free base the force and moment
@@ -34,8 +34,8 @@ struct NewtonEuler {
       const bool root = d.parent < 0;
       const Eigen::Matrix3d turn = placed.rotation(static_cast<int>(i));
       const Eigen::Matrix3d before = root ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : placed.rotation(d.parent);
-      const Vector3d spin = root ? Vector3d(0, 0, 0) : b[at(d.parent)].spin;
-      const Vector3d turning = root ? Vector3d(0, 0, 0) : b[at(d.parent)].turning;
+      const Vector3d spin = root ? Vector3d(0, 0, 0) : b[index_of(d.parent)].spin;
+      const Vector3d turning = root ? Vector3d(0, 0, 0) : b[index_of(d.parent)].turning;
       Body& me = b[i];
       me.centre = placed.centre_m(static_cast<int>(i));
       const double *v = dq.data() + links[i].first_dof, *a = ddq.data() + links[i].first_dof;
@@ -46,8 +46,8 @@ struct NewtonEuler {
         me.anchor = me.centre;
       } else {
         const Vector3d arm =
-            before * (root ? Vector3d(0, 0, 0) : Vector3d(d.anchor_m - links[at(d.parent)].def.centre_m));
-        me.anchor = root ? d.anchor_m : Vector3d(b[at(d.parent)].centre + arm);
+            before * (root ? Vector3d(0, 0, 0) : Vector3d(d.anchor_m - links[index_of(d.parent)].def.centre_m));
+        me.anchor = root ? d.anchor_m : Vector3d(b[index_of(d.parent)].centre + arm);
         Vector3d sliding = Vector3d::Zero(), slide_up = Vector3d::Zero();
         me.spin = spin;
         me.turning = turning;
@@ -57,7 +57,7 @@ struct NewtonEuler {
           if (d.joint == JointKind::kUniversal && k == 1) axis = turn * d.axes[1].axis.normalized();
           me.axes[k] = axis;
           if (d.joint == JointKind::kPrismatic) {
-            const double q = s.state().positions[at(links[i].first_coordinate)];
+            const double q = s.state().positions[index_of(links[i].first_coordinate)];
             me.anchor += q * axis;
             sliding = v[0] * axis;
             slide_up = a[0] * axis;
@@ -67,8 +67,8 @@ struct NewtonEuler {
           me.turning += a[k] * axis + carried_by.cross(v[k] * axis);
           me.spin += v[k] * axis;
         }
-        const Vector3d r = root ? Vector3d(me.anchor - d.anchor_m) : Vector3d(me.anchor - b[at(d.parent)].centre);
-        const Vector3d base = root ? Vector3d(0, 0, 0) : b[at(d.parent)].speed_up;
+        const Vector3d r = root ? Vector3d(me.anchor - d.anchor_m) : Vector3d(me.anchor - b[index_of(d.parent)].centre);
+        const Vector3d base = root ? Vector3d(0, 0, 0) : b[index_of(d.parent)].speed_up;
         const Vector3d at_anchor =
             base + turning.cross(r) + spin.cross(spin.cross(r)) + 2 * spin.cross(sliding) + slide_up;
         const Vector3d lever = me.centre - me.anchor;
@@ -81,12 +81,12 @@ struct NewtonEuler {
     }
     for (std::size_t i = links.size(); i-- > 0;) {
       for (int k = 0; k < links[i].dofs && !links[i].def.is_free; ++k)
-        needed[at(links[i].first_dof + k)] =
+        needed[index_of(links[i].first_dof + k)] =
             b[i].axes[k].dot(links[i].def.joint == JointKind::kPrismatic ? b[i].force : b[i].moment);
       const int parent = links[i].def.parent;
       if (parent >= 0) {
-        b[at(parent)].force += b[i].force;
-        b[at(parent)].moment += b[i].moment + (b[i].anchor - b[at(parent)].anchor).cross(b[i].force);
+        b[index_of(parent)].force += b[i].force;
+        b[index_of(parent)].moment += b[i].moment + (b[i].anchor - b[index_of(parent)].anchor).cross(b[i].force);
       } else if (links[i].def.is_free) {
         base_force = b[i].force;
         base_moment = b[i].moment;
@@ -111,7 +111,7 @@ TEST_CASE("Newton-Euler inverse dynamics returns the applied torques for every j
     randomize_state(s, random);
     std::vector<double> torque(s.tree().dofs.size());
     for (std::size_t j = 0; j < torque.size(); ++j)
-      if (!s.tree().links[at(s.tree().dofs[j].link)].def.is_free)
+      if (!s.tree().links[index_of(s.tree().dofs[j].link)].def.is_free)
         set_torque(s, static_cast<int>(j), torque[j] = u(random));
     const NewtonEuler oracle(s);
     double largest = 1;
@@ -158,7 +158,7 @@ TEST_CASE("The velocity of a point is its Jacobian times the joint rates") {
     s.dynamics().jacobian(5, here, rows);
     Vector3d sum = Vector3d::Zero();
     for (std::size_t j = 0; j < dofs; ++j)
-      for (int k = 0; k < 3; ++k) sum[k] += rows[at(k) * dofs + j] * state.rates[j];
+      for (int k = 0; k < 3; ++k) sum[k] += rows[index_of(k) * dofs + j] * state.rates[j];
     CHECK((sum - s.dynamics().velocity_at(5, here)).norm() < 1e-12 * (1 + sum.norm()));
     // And with the poses. Central difference: the error is h^2 v'' / 6 with v'' below 1e4 m/s^3.
     const double h = 1e-5;

@@ -81,7 +81,7 @@ TEST_CASE(
     s.start(11);
     solver_failures = 0;
     dSetMessageHandler([](int, const char*, va_list) { ++solver_failures; });
-    test::Hand hand{.radius = w.tools[0].radius_m, .stiffness = 500, .last = along(w, w.tools[0], 0)};
+    sim::test::Hand hand{.radius = w.tools[0].radius_m, .stiffness = 500, .last = along(w, w.tools[0], 0)};
     double fastest = 0, farthest = 0;
     std::size_t begins = 0, contacts = 0;
     std::vector<contact_t> live;
@@ -102,7 +102,7 @@ TEST_CASE(
     CHECK(fastest < kFastest_m_s);
     CHECK(farthest < kFarthest_m);
     CHECK(solver_failures == 0);
-    if (dynamic_cast<const SingleGroup*>(&s.mechanics())) CHECK(test::largest_joint_gap_m(w, s.bodies()) < 0.005);
+    if (dynamic_cast<const SingleGroup*>(&s.mechanics())) CHECK(sim::test::largest_joint_gap_m(w, s.bodies()) < 0.005);
   }
 }
 
@@ -126,7 +126,7 @@ TEST_CASE(
   REQUIRE(w.holes.size() == 3);
   Simulation s(w, settings_of(w));
   s.start(11);
-  test::Hand hand{.radius = 0.008, .stiffness = 500, .last = {-0.3, 0, 0.15}};
+  sim::test::Hand hand{.radius = 0.008, .stiffness = 500, .last = {-0.3, 0, 0.15}};
   Vector3d device(-0.3, 0, 0.15);
   game_state_t game{};
   // Moves there at 0.25 m/s and returns the number of filled holes.

@@ -15,7 +15,7 @@ namespace {
 
 const std::string kGoodMap = "friction_map='halves.png' friction_size='0.5m 20cm' friction_factors='0.2 1.5'";
 
-sync::Bytes halves() { return test::png_bytes(2, 2, 8, {0, 255, 0, 255}); }
+sync::Bytes halves() { return tactus::test::png_bytes(2, 2, 8, {0, 255, 0, 255}); }
 
 SceneFile map_scene(const std::string& attributes, const sync::Bytes& picture = halves()) {
   return SceneFile(

@@ -39,7 +39,7 @@ std::string model_file(const std::string& name, const std::string& inside) {
 struct Stranger {
   SceneFile file;
   Stranger() {
-    const auto png = test::png_bytes(2, 2, 8, {0, 255, 255, 0});
+    const auto png = tactus::test::png_bytes(2, 2, 8, {0, 255, 255, 0});
     const std::string picture(png.begin(), png.end());
     for (const std::string folder : {"", "scene/", "scene/.hidden/"}) {
       file.write(folder + "m.obj", kTriangle);
@@ -208,7 +208,7 @@ TEST_CASE("Includes and models that are nested without end, or very deep, are on
 TEST_CASE("One height map or mesh in many sizes is counted for each size") {
   SceneFile file;
   const double before_MB = memory_MB();
-  const auto png = test::png_bytes(4097, 4097, 8, std::vector<std::uint8_t>(std::size_t{4097} * 4097));
+  const auto png = tactus::test::png_bytes(4097, 4097, 8, std::vector<std::uint8_t>(std::size_t{4097} * 4097));
   file.write("flat.png", {png.begin(), png.end()});
   std::string links;
   for (int i = 1; i < 40; ++i)

@@ -11,11 +11,6 @@
 using namespace tactus;
 using namespace tactus::sync;
 
-namespace {
-constexpr int kHit = node_health_t::EXPECTS_HIT;
-constexpr int kBoth = int{node_health_t::EXPECTS_BEGIN} | int{node_health_t::EXPECTS_HIT};
-}  // namespace
-
 TEST_CASE("An event with a deliberate delay is not lost before the delay has passed") {
   MatcherFixture f;
   f.healths("audio_node", "audio", kHit, 0, 9000);

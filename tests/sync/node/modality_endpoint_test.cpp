@@ -92,7 +92,7 @@ TEST_CASE("Each input has its own newest arrival: events do not keep snapshots a
   auto& events = sense.events();
   Identity sender = Identity::fresh("sim_node", 1);
   HostTime now = host_now(), last_frame{};
-  for (std::int64_t ms = 0; ms < 300; ++ms, now += kMs) {
+  for (std::int64_t ms = 0; ms < 300; ++ms, now += kMillisecond) {
     const contact_frame_t f = frame(sender, ms, now);
     contact_events_t e{};
     e.header = f.header, e.clock = f.clock, e.pages = 1;
@@ -120,7 +120,7 @@ TEST_CASE("The arrival listener of a stream receives the messages of the followe
   frames.on_arrival([&](const contact_frame_t& m, HostTime arrival) { heard.push_back({m.header.incarnation, m.header.seq, arrival}); });
   Identity first = Identity::fresh("sim_node", 1), second = Identity::fresh("sim_node", 1), foreign = Identity::fresh("sim_node", 2);
   HostTime now = host_now();
-  for (std::int64_t ms = 0; ms < 200; ++ms, now += kMs) {
+  for (std::int64_t ms = 0; ms < 200; ++ms, now += kMillisecond) {
     const std::size_t before = heard.size();
     node.bus().on_message(channels::kContacts, encode(frame(first, ms, now)), now);
     if (ms > 0) node.bus().on_message(channels::kContacts, encode(frame(second, 1000 + ms, now)), now);

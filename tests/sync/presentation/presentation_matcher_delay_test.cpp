@@ -12,8 +12,6 @@ using namespace tactus::sync;
 
 namespace {
 
-constexpr int kHit = node_health_t::EXPECTS_HIT;
-
 // audio_node presents the event `delay_ms` after it happened, as it had scheduled.
 void present(MatcherFixture& f, std::int64_t id, double event_ms, double delay_ms) {
   presented_t m = MatcherFixture::presented_message("audio_node", "audio", id, event_ms + delay_ms);

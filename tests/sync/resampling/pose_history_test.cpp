@@ -126,7 +126,7 @@ TEST_CASE("A replayed log is read by arrival") {
 
 TEST_CASE("A history is as long as the delay of its view, for every delay of a minute") {
   for (const std::int64_t delay_ms : {0, 900, 1500, 10'000, 60'000}) {
-    PoseHistory history{kRun};
+    PoseHistory history{kPoseRun};
     history.extend_history(Nanoseconds(delay_ms * kMs));
     const std::int64_t until_ms = delay_ms + 2000;
     for (std::int64_t t = 0; t <= until_ms * kMs; t += 4 * kMs) history.push(head_at(t), host_time(t + kMs));

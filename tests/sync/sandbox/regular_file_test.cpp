@@ -22,7 +22,7 @@ struct Folder : TemporaryFolder {
   }
 };
 
-std::string why(const fs::path& file, std::uintmax_t max_bytes = 1 << 20) {
+std::string refusal(const fs::path& file, std::uintmax_t max_bytes = 1 << 20) {
   try {
     read_regular_file(file, max_bytes);
     return "";
@@ -40,15 +40,15 @@ TEST_CASE("A pipe, a device, a folder and a large file are rejected without wait
   fs::create_symlink("/dev/zero", folder.file("zero"));
   fs::create_symlink(folder.file("pipe"), folder.file("link"));
   fs::create_symlink("loop", folder.file("loop"));
-  for (const char* name : {"pipe", "zero", "link", "."}) CHECK(why(folder.path / name) == "it is not a regular file");
-  CHECK(why("/dev/tty") != "");
-  CHECK(why(folder.file("none")) == "it does not exist");
-  CHECK(why(folder.file("loop")) == "it does not exist");
-  CHECK(why(folder.path / std::string(5000, 'x')) == "it does not exist");
-  CHECK(why(folder.path / std::string("text\0.png", 9)) == "it does not exist");
-  CHECK(why(folder.file("text"), 3) == "it is larger than 0 KiB");
+  for (const char* name : {"pipe", "zero", "link", "."}) CHECK(refusal(folder.path / name) == "it is not a regular file");
+  CHECK(refusal("/dev/tty") != "");
+  CHECK(refusal(folder.file("none")) == "it does not exist");
+  CHECK(refusal(folder.file("loop")) == "it does not exist");
+  CHECK(refusal(folder.path / std::string(5000, 'x')) == "it does not exist");
+  CHECK(refusal(folder.path / std::string("text\0.png", 9)) == "it does not exist");
+  CHECK(refusal(folder.file("text"), 3) == "it is larger than 0 KiB");
   fs::resize_file(folder.file("text"), (1 << 20) + 1);
-  CHECK(why(folder.file("text")) == "it is larger than 1 MiB");
+  CHECK(refusal(folder.file("text")) == "it is larger than 1 MiB");
   CHECK(read_regular_text(folder.file("text"), 2 << 20).substr(0, 5) == std::string("four\0", 5));
 }
 

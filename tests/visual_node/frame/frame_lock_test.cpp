@@ -32,8 +32,8 @@ struct SeenTimes {
 };
 
 // One wall: its own clock, drawing time and received messages.
-struct Wall {
-  Wall(std::int32_t clock, sync::Nanoseconds ahead_of_room, Settings settings, sync::Nanoseconds draws)
+struct LockedWall {
+  LockedWall(std::int32_t clock, sync::Nanoseconds ahead_of_room, Settings settings, sync::Nanoseconds draws)
       : maps(kLockRun), ahead(ahead_of_room), draws(draws), lock({kLockRun, clock, &maps}, "visual", clock) {
     settings.room = "cave4";
     scene_t scene = test::empty_scene();
@@ -60,14 +60,14 @@ struct Wall {
 // A bus and its walls, simulated in steps of 0.1 ms of the room's clock.
 struct RoomBus {
   std::mt19937 random{7};
-  std::vector<std::unique_ptr<Wall>> walls;
+  std::vector<std::unique_ptr<LockedWall>> walls;
   double lost = 0;
   // Simulated time by the map of sim_node: sim_ns at host_ns, at this rate; the rate may change with every step.
   std::int64_t sim_ns = 0;
   double rate = 1;
 
-  Wall& add(std::int32_t clock, sync::Nanoseconds ahead, sync::Nanoseconds draws, const Settings& settings = {}) {
-    return *walls.emplace_back(std::make_unique<Wall>(clock, ahead, settings, draws));
+  LockedWall& add(std::int32_t clock, sync::Nanoseconds ahead, sync::Nanoseconds draws, const Settings& settings = {}) {
+    return *walls.emplace_back(std::make_unique<LockedWall>(clock, ahead, settings, draws));
   }
   bool arrives() { return std::uniform_real_distribution<>(0, 1)(random) >= lost; }
 
@@ -122,7 +122,7 @@ struct RoomBus {
       pending.begin()->second(t);
   }
   // As in the loop: begin at the best time, draw, hold until due.
-  void draw(Wall& w) {
+  void draw(LockedWall& w) {
     if (t < w.busy_until_ns) return;
     const auto room_of = [&](sync::HostTime to_host) { return sync::to_ns(to_host - w.ahead); };
     if (!w.drawing) {
@@ -158,7 +158,7 @@ struct RoomBus {
 struct Common {
   int frames = 0, world = 0, head = 0;
 };
-Common common(const Wall& a, const Wall& b) {
+Common common(const LockedWall& a, const LockedWall& b) {
   Common c;
   for (const auto& [number, x] : a.seen) {
     const auto y = b.seen.find(number);
@@ -205,7 +205,7 @@ TEST_CASE("A wall that needs 100 ms shows every sixth or seventh frame at the ti
 TEST_CASE("With a short lag a slow wall draws the same time with an older head pose and reports it") {
   RoomBus room;
   room.add(kSimClock, {}, milliseconds(5));
-  Wall& slow = room.add(2, std::chrono::hours(1), milliseconds(100));
+  LockedWall& slow = room.add(2, std::chrono::hours(1), milliseconds(100));
   room.run(6);
   const Common c = common(*room.walls[0], slow);
   REQUIRE(c.frames > 30);
@@ -235,8 +235,8 @@ TEST_CASE("Walls stay together while the simulation slows down, pauses and resum
 TEST_CASE(
     "A new presentation delay applies to all walls and moves the world but not the head") {
   RoomBus room;
-  Wall& a = room.add(kSimClock, {}, milliseconds(4));
-  Wall& b = room.add(2, milliseconds(777), milliseconds(11));
+  LockedWall& a = room.add(kSimClock, {}, milliseconds(4));
+  LockedWall& b = room.add(2, milliseconds(777), milliseconds(11));
   room.asked_ns = 40'000'000;
   room.run(3);
   room.asked_ns = 15'000'000;
@@ -298,7 +298,7 @@ TEST_CASE("There is no lock without a room, with the lock off, or before the fir
 
 TEST_CASE("FRAME_SHOWN contains number, due time, simulated time and head pose of a frame") {
   RoomBus room;
-  Wall& wall = room.add(kSimClock, {}, milliseconds(5));
+  LockedWall& wall = room.add(kSimClock, {}, milliseconds(5));
   room.run(2);
   const LockedFrame frame = *wall.lock.begin_frame(wall.to_host(room.t));
   const frame_shown_t m = wall.lock.message(frame, frame_shown_t::SHOWN);
@@ -312,7 +312,7 @@ TEST_CASE("FRAME_SHOWN contains number, due time, simulated time and head pose o
 
 TEST_CASE("After a stall a wall detects missing inputs of its next frame") {
   RoomBus room;
-  Wall& wall = room.add(2, std::chrono::hours(1), milliseconds(9));
+  LockedWall& wall = room.add(2, std::chrono::hours(1), milliseconds(9));
   CHECK(wall.lock.inputs_complete(wall.to_host(room.t)));  // no lock before the first message
   room.run(1);
   CHECK(wall.lock.inputs_complete(wall.to_host(room.t)));

@@ -25,8 +25,18 @@ def die_with_parent():
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
 
 
+@contextlib.contextmanager
+def interrupts_held():
+    """Within it Ctrl-C and SIGTERM wait, so that a process that was started is also known."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield before
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class Parallel:
-    """Plays chunks on the cores of this machine, each in its own process. A failed chunk does not stop the others."""
+    """Plays chunks on the cores of this machine, each in its own process, from the first poll() on. A failed chunk does not stop the others."""
 
     def __init__(self, folder, chunks, jobs):
         self.waiting = list(chunks)
@@ -34,20 +44,18 @@ class Parallel:
         self.running = []
         self.errors = folder.path / "errors.txt"
         self.errors.write_bytes(b"")
-        try:
-            self.fill()
-        except OSError:
-            self.end()
-            raise
 
     def fill(self):
         """Starts waiting chunks until `jobs` run."""
         while self.waiting and len(self.running) < self.jobs:
             words = [*self.words, str(self.waiting.pop(0))]
-            with open(self.errors, "ab") as errors:
+            with open(self.errors, "ab") as errors, interrupts_held() as mask:
+                def prepare(mask=mask):
+                    die_with_parent()
+                    signal.pthread_sigmask(signal.SIG_SETMASK, mask)
                 # A new session, so that Ctrl-C reaches only the sweep, which ends its jobs.
                 self.running.append(subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, start_new_session=True,
-                                                     preexec_fn=die_with_parent))
+                                                     preexec_fn=prepare))
 
     def poll(self):
         """Starts the next chunks. True when all are finished."""

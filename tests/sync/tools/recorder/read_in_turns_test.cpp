@@ -21,7 +21,7 @@ struct FakePort {
   }
 };
 
-int read_all(std::array<FakePort, 2>& ports, int max_messages) {
+int read_both(std::array<FakePort, 2>& ports, int max_messages) {
   return read_in_turns(ports, 64, max_messages, [](FakePort& port, int batch) { return port.read(batch); });
 }
 
@@ -29,14 +29,14 @@ int read_all(std::array<FakePort, 2>& ports, int max_messages) {
 
 TEST_CASE("All pending messages of both ports are read") {
   std::array<FakePort, 2> ports{FakePort{1000}, FakePort{130}};
-  CHECK(read_all(ports, 50'000) == 1130);
+  CHECK(read_both(ports, 50'000) == 1130);
   CHECK(ports[0].waiting == 0);
   CHECK(ports[1].waiting == 0);
 }
 
 TEST_CASE("Reading ends under a flood that refills a port faster than it is read") {
   std::array<FakePort, 2> ports{FakePort{1000, 200}, FakePort{10}};
-  const int count = read_all(ports, 5000);
+  const int count = read_both(ports, 5000);
   CHECK(count >= 5000);
   CHECK(count < 5000 + 2 * 64);
   CHECK(ports[1].total_read == 10);  // a flood of one port does not hide the other
