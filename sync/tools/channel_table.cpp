@@ -124,7 +124,7 @@ std::string WideColumns::row(const TableContext& context, const LogEvent& event,
 
 std::string tag_names() { return "log_s,node,tag,unit,value,run\n"; }
 
-std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival) {
+std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival, const LogInterval& interval) {
   const auto m = decode<tag_values_t>(event.data.data(), event.data.size());
   std::string rows;
   if (!m) return rows;
@@ -134,6 +134,7 @@ std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent
   const std::int64_t sent_ns =
       (m->header.clock == info.header.clock ? 0 : to_ns(arrival) - m->header.publish_time_ns) - info.live_from_ns;
   tags.read(*m, [&](const TagTable::List& list, const tag_def_t& tag, std::int64_t time_ns, double value) {
+    if (!interval.contains(sent_ns + time_ns)) return;
     rows += seconds(sent_ns + time_ns) + "," + csv_cell(std::string_view(list.node)) + "," + csv_cell(std::string_view(tag.name)) + "," +
             csv_cell(std::string_view(tag.unit)) + "," + number(value) + "," + std::to_string(context.run()) + "\n";
   });
