@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim_node/scene/meshes/assimp_reason.h"
 #include "sim_node/scene/meshes/collada_size.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
 #include "sync/sandbox/regular_file.h"
@@ -18,7 +19,6 @@
 namespace tactus::sim {
 namespace {
 
-constexpr char kNoSurface[] = "it holds no surface, neither a triangle nor a polygon; export it with faces";
 constexpr int kMaxNodeDepth = 256;  // as in gltf_reader.cpp
 
 // Opens regular files of bounded size below the readable folders only, because a material library may be named
@@ -223,12 +223,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file, const sync::Readab
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
                                          aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
   }
-  if (!scene || !scene->mRootNode) {
-    // The words of assimp for a file of points and lines alone.
-    const std::string reason = importer.GetErrorString();
-    const bool empty = reason.find("No meshes") != std::string::npos || reason.find("invalid primitive type") != std::string::npos;
-    throw std::runtime_error(empty ? kNoSurface : reason);
-  }
+  if (!scene || !scene->mRootNode) throw std::runtime_error(assimp_reason(file, importer.GetErrorString()));
   Totals shown;  // again, because polygons have become triangles
   shown.add(*scene, *scene->mRootNode, 0);
   MeshParts mesh;

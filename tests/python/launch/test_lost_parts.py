@@ -36,6 +36,15 @@ class Recording(unittest.TestCase):
         line = "recorder: /out/run.lcmlog: the disk refuses the log (File too large); 70 events, 800 lost because the disk is full or too slow"
         self.assertTrue(self.errors(line)[-1].startswith(line + "; free space, raise the limit of file sizes"))
 
+    def test_a_sound_file_that_the_disk_refused_is_an_error_with_the_place_of_its_end(self):
+        line = "audio_node: plays on virtual card into audio.wav; the disk refuses the sound (File too large): audio.wav ends after 1.3 s"
+        (said,) = main.incomplete_sound([line])
+        self.assertTrue(said.startswith(f"{line}; free space, raise the limit of file sizes"))
+        text = (pathlib.Path(__file__).resolve().parents[3] / "audio_node/devices/stream.cpp").read_text(encoding="utf-8")
+        for words in main.SOUND_LOST:
+            self.assertIn(f'"{words}', text)
+        self.assertEqual([], main.incomplete_sound([]))
+
     def test_a_full_disk_is_named_also_when_the_log_of_the_recorder_is_on_it(self):
         self.assertIn("the disk of /out is full", self.errors(disk=FULL)[-1])
 
