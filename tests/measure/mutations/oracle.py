@@ -19,7 +19,7 @@ QUIET = {"LC_ALL": "C", "ASAN_OPTIONS": "abort_on_error=1"}
 
 
 class Answer:
-    """What a program answered: status, lines of stderr."""
+    """The answer of a program: status, output, lines of stderr."""
 
     def __init__(self, words):
         self.name = pathlib.Path(words[0]).name
@@ -120,7 +120,7 @@ def world_faults(bin_folder, scene, folder, others=()):
 
 
 def run_faults(bin_folder, out, complete):
-    """Violations in the log of a run: a number that is not finite, an event that a modality owes and does not present."""
+    """Violations in the log of a run: a number that is not finite, an expected event that a modality does not present."""
     tables = out / "tables"
     tables.mkdir()
     summary = Answer([bin_folder / "summarise", out, "--out", out / "summary.json"])
@@ -161,7 +161,7 @@ def log_faults(bin_folder, log, folder, renderers):
 
 
 def silent_damage(log, described):
-    """A log with bytes that belong to no event, which nobody reports."""
+    """Bytes of a log that belong to no event and are not reported as damage."""
     data, at = log.read_bytes(), 0
     while at + 28 <= len(data) and data[at:at + 4] == b"\xed\xa1\xda\x01":
         name, size = (int.from_bytes(data[at + k:at + k + 4], "big") for k in (20, 24))
