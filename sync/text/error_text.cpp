@@ -24,8 +24,10 @@ std::string error_text(const std::exception& e) {
     const std::string other = file->path2().empty() ? "" : " to " + file->path2().string();
     return file->path1().string() + other + ": " + file->code().message() + "; check the path and its permissions";
   }
-  if (const auto* refused = dynamic_cast<const std::system_error*>(&e))
-    return "the system refuses a thread or a file (" + refused->code().message() + "); raise the limits of this user, see ulimit -a";
+  // std::thread gives only the reason.
+  const auto* refused = dynamic_cast<const std::system_error*>(&e);
+  if (refused && refused->what() == refused->code().message())
+    return "the system refuses a thread (" + refused->code().message() + "); raise the limits of this user, see ulimit -a";
   if (dynamic_cast<const std::bad_alloc*>(&e)) return "there is not enough memory; close other programs, raise ulimit -v, or give a smaller input";
   const std::string what = e.what();
   return what.starts_with(kJson) ? json_text(what) : what;

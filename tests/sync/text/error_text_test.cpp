@@ -23,7 +23,7 @@ TEST_CASE("An error of the file system names path, reason and remedy, and no fun
 
 TEST_CASE("An exception of a library has a sentence with a remedy, without the name of a function or class") {
   CHECK_THAT(error_text(std::bad_alloc()), Catch::StartsWith("there is not enough memory; "));
-  const std::system_error thread(std::make_error_code(std::errc::resource_unavailable_try_again), "thread");
+  const std::system_error thread(std::make_error_code(std::errc::resource_unavailable_try_again));  // as std::thread throws it
   CHECK_THAT(error_text(thread), Catch::StartsWith("the system refuses a thread") && Catch::Contains("ulimit"));
   try {
     (void)nlohmann::json{{"seed", "x"}}.at("seed").get<int>();
