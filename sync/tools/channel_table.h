@@ -46,7 +46,7 @@ std::string csv_cell(const Leaf& value);
 
 // log_s, world_s, sender, seq, field, unit, value, run.
 std::string long_names();
-// The rows of a message; empty when it is not a complete message of the type.
+// The rows of a message; empty when it is not a complete message of the type, or holds a number that is not finite.
 std::string long_rows(const TableContext& context, const MessageType& type, const LogEvent& event,
                       HostTime arrival);
 

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <tactus/asset_request_t.hpp>
 #include <tactus/clock_map_t.hpp>
@@ -161,6 +162,21 @@ TEST_CASE("Text with commas, quotes and line ends stays in one cell, and damaged
   bytes.pop_back();
   CHECK(long_rows(log.context, type, log.event("X", bytes), {}).empty());
   CHECK(WideColumns(type).row(log.context, log.event("X", bytes), {}).empty());
+}
+
+TEST_CASE("A message with a number that is not finite has no rows") {
+  Log log;
+  Samples samples(23);
+  tool_state_t m{};
+  samples.fill(m);
+  const MessageType& type = *message_type("tool_state_t");
+  CHECK_FALSE(long_rows(log.context, type, log.event("X", encode(m)), {}).empty());
+  for (const double number : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    m.force_N.x = number;
+    const auto bytes = encode(m);
+    CHECK(long_rows(log.context, type, log.event("X", bytes), {}).empty());
+    CHECK(WideColumns(type).row(log.context, log.event("X", bytes), {}).empty());
+  }
 }
 
 TEST_CASE("Tagged values have their own time stamps, and senders have names") {
