@@ -22,7 +22,8 @@ void OfflineOptions::add_to(Arguments& app, const std::string& does, const std::
 
 OfflineInput::OfflineInput(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
                  Nanoseconds tail)
-    : feed_(options.log, rate_Hz, options.run),
+    : log_(options.log),
+      feed_(options.log, rate_Hz, options.run),
       run_number_(options.run),
       rate_Hz_(rate_Hz),
       as_recorded_(options.as_recorded),
@@ -119,8 +120,7 @@ void OfflineTable::add_row(const std::string& row) {
 
 std::string OfflineTable::result(const std::string& problem, HostTime clock) {
   if (!first_)
-    throw std::runtime_error(problem.empty() ? "the log has no scene; give one that scripts/run wrote from its beginning"
-                                             : problem);
+    throw std::runtime_error(problem.empty() ? run_.no_scene() : problem);
   const double rendered_s = to_seconds(run_.now() - *first_);
   const std::string rest = run_.finish(rendered_s, clock);
   table_.finish();
