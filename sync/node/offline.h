@@ -45,8 +45,10 @@ class OfflineInput {
   const LogFeed& feed() const { return feed_; }
   // Its number in the log.
   int run_number() const { return run_number_; }
-  // The sentence for a log that held no scene until its end.
-  std::string no_scene() const { return printable(log_) + ": the log has no scene; give one that scripts/run wrote from its beginning"; }
+  // A sentence about the log, with its name.
+  std::string refusal(const std::string& reason) const { return printable(log_) + ": " + reason; }
+  // Of a log that held no scene until its end.
+  std::string no_scene() const { return refusal("the log has no scene; give one that scripts/run wrote from its beginning"); }
   // The next tick of the log.
   HostTime next(Bus& bus);
   // Sets the time of the next tick, instead of one period after the last.
