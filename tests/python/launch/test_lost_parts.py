@@ -45,6 +45,17 @@ class Recording(unittest.TestCase):
             self.assertIn(f'"{words}', text)
         self.assertEqual([], main.incomplete_sound([]))
 
+    def test_a_video_that_ends_early_is_found_in_the_output_of_its_node(self):
+        line = "visual_node: the video ends early: its encoder has died"
+        with tempfile.TemporaryDirectory() as kept:
+            folder = pathlib.Path(kept)
+            (folder / "services").mkdir()
+            nodes = {name: services.Service(folder, name, ["true"], folder / f"{name}.log", folder) for name in ("visual_node", "audio_node")}
+            (folder / "visual_node.log").write_text(f"visual_node: 60 Hz\n{line}\nvisual_node: the window was closed\n", encoding="utf-8")
+            self.assertEqual([line], main.lines_with(main.VIDEO_ENDS, nodes))
+        text = (pathlib.Path(__file__).resolve().parents[3] / "visual_node/video/recording.cpp").read_text(encoding="utf-8")
+        self.assertIn(f'"{main.VIDEO_ENDS[0]}', text)
+
     def test_a_full_disk_is_named_also_when_the_log_of_the_recorder_is_on_it(self):
         self.assertIn("the disk of /out is full", self.errors(disk=FULL)[-1])
 
