@@ -192,6 +192,17 @@ bool is_default_material(const MeshMaterial& m) {
   return (m.name.empty() || m.name == AI_DEFAULT_MATERIAL_NAME) && m.colour_map.none();
 }
 
+// The readers of PLY and of others pass on any index, and the post-processing relies on them.
+void check_indices(const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+      for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k)
+        if (mesh.mFaces[f].mIndices[k] >= mesh.mNumVertices)
+          throw std::runtime_error("face " + std::to_string(f + 1) + " names a vertex that the file does not hold; export it again");
+  }
+}
+
 bool has_surface(const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m)
     for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
@@ -216,6 +227,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file, const sync::Readab
     throw std::runtime_error("it names \"" + outside.substr(0, 200) + "\", which is hidden or outside the folder of the scene");
   if (scene && scene->mRootNode) {
     if (!has_surface(*scene)) throw std::runtime_error(kNoSurface);
+    check_indices(*scene);
     // Counted before processing: normals of millions of triangles take minutes.
     Totals all, shown;
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) all.add(*scene->mMeshes[m]);

@@ -35,6 +35,9 @@ TEST_CASE("A damaged mesh is refused with a reason and a remedy, and without the
       {"words.stl", "hello, this is a text and no STL file, and it is longer than the head of one, which has eighty bytes\n", "it is no STL file"},
       {"magic.ply", "plx\nformat ascii 1.0\nend_header\n", "it does not begin with the word ply"},
       {"none.ply", "ply\nformat ascii 1.0\nend_header\n", "it holds no surface"},
+      {"index.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                    "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2147483647\n",
+       "face 1 names a vertex that the file does not hold"},
       {"noise.xyz", "\x01\x02 nothing that any reader knows", "its format is not known"},
       {"noise.3ds", std::string(200, '\x7f'), "its contents are not those of a .3ds file"},
   };
