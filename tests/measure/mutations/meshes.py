@@ -120,6 +120,7 @@ SHAPE_KINDS = {
     "wrong index": wrong_index,
 }
 KINDS = (*SHAPE_KINDS, "truncated", "bytes")
+WITHOUT_VOLUME = ("open",)
 
 
 def number(value):

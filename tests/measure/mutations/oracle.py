@@ -95,14 +95,17 @@ def plan_of(bin_folder, scene, out):
     return {name: [str(bin_folder / name), *common, *own.get(name, [])] for name in NODES}
 
 
-def world_faults(bin_folder, scene, folder, others=()):
-    """(answer class, violations) of a scene: it is refused, it stops, or it runs. others: names of files that a refusal may name instead."""
+def world_faults(bin_folder, scene, folder, others=(), must_speak=False):
+    """(answer class, violations) of a scene: it is refused, it stops, or it runs. others: names of files that a refusal may name instead. must_speak: it
+    holds a text that is no number, or a body whose mass is unknown, so it is refused or causes a warning."""
     check = Answer([bin_folder / "sim_node", "--check", scene])
     faults = check.crashes() + check.raw_words()
     if faults:
         return "failed", faults
     if check.status != 0:
         return "refused", refusal_faults(check, scene.name, *others)
+    if must_speak and not any(name in line for name in (scene.name, *others) for line in check.lines):
+        return "failed", ["the change is accepted in silence"]
     out = folder / "out"
     out.mkdir()
     plan = out / "plan.json"

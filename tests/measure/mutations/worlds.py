@@ -7,6 +7,8 @@ ET.register_namespace("tactus", NAMESPACE)
 SIZES = ("size", "radius", "length")
 NOT_NUMBERS = ("nan", "inf", "-inf", "1e999", "-1e999", "0x10", "--1", "1,5", "", "five", "1.2.3")
 UNITS = ("mm", " m", "kg", "%", "m/s", " inch")
+# Elements of SDF whose numbers have an effect: a text in them that is no number must be refused or reported.
+MEASURES = ("size", "radius", "length", "mass", "pose", "gravity", "xyz", "lower", "upper", "ixx", "iyy", "izz", "damping")
 
 
 def numbers_of(element):
@@ -126,12 +128,12 @@ def emptied(root, draw):
 
 
 def wrong_unit(root, draw):
-    element = draw.choice([e for e in root.iter() if numbers_of(e)])
+    element = draw.choice(all_of(root, *MEASURES))
     element.text += draw.choice(UNITS)
 
 
 def not_a_number(root, draw):
-    element = draw.choice([e for e in root.iter() if numbers_of(e)])
+    element = draw.choice(all_of(root, *MEASURES))
     words = element.text.split()
     words[draw.randrange(len(words))] = draw.choice(NOT_NUMBERS)
     element.text = " ".join(words)
@@ -160,6 +162,7 @@ TREE_KINDS = {
     "rearranged": rearranged,
 }
 KINDS = (*TREE_KINDS, "truncated", "bytes")
+NEVER_SILENT = ("wrong unit", "not a number")  # no scene holds such a text rightly
 
 
 def mutated(text, kind, draw):
