@@ -118,7 +118,7 @@ def record(bin_folder):
         out = pathlib.Path(place)
         plan_file = out / "plan.json"
         plan_file.write_text(json.dumps(oracle.plan_of(pathlib.Path(bin_folder), SCENES / LOG_OF, out)), encoding="utf-8")
-        made = oracle.Answer([pathlib.Path(bin_folder) / "virtual_time", plan_file, "--seconds", "1", "--seed", "1"])
+        made = oracle.Answer([pathlib.Path(bin_folder) / "virtual_time", plan_file, "--seconds", "0.5", "--seed", "1"])
         if made.status != 0:
             raise AssertionError(f"no log of {LOG_OF}: {made.last()}")
         return (out / "run.lcmlog").read_bytes()

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 
 LIMIT_S = 60  # of one program; the inputs are small
-RUN_S = 0.3  # of simulated time
+RUN_S = 0.2  # of simulated time
 NODES = ("recorder", "sync_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sim_node")
 NAN = re.compile(rb"(?i)(?<![a-z_.])[-+]?(nan|inf|infinity)(?![a-z_])")
 # Words of libraries and of the compiler, which say nothing to a user.
