@@ -50,7 +50,7 @@ void require_positive(const LoadContext& context, const sdf::Element& owner, con
 constexpr const char* kShapes[] = {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap"};
 
 // SDF's defaults for lengths that are missing (cylinder_shape.sdf, capsule_shape.sdf, ...).
-constexpr double kDefaultRadius_m = 1, kDefaultCapsuleRadius_m = 0.5, kDefaultLength_m = 1;
+constexpr double kSdfRadius_m = 1, kSdfCapsuleRadius_m = 0.5, kSdfLength_m = 1;
 
 void read_plane(const LoadContext& context, const sdf::Element& plane, ShapeDef& shape) {
   const sdf::Element* size = plane.child("size");
@@ -68,12 +68,12 @@ void read_sizes(LoadContext& context, const sdf::Element& element, ShapeDef& sha
     shape.size_m = sdf::child_vector3(&element, "size", {1, 1, 1});
   } else if (element.name == "sphere") {
     shape.kind = ShapeKind::kSphere;
-    shape.size_m = {sdf::child_number(&element, "radius", kDefaultRadius_m), 1, 1};
+    shape.size_m = {sdf::child_number(&element, "radius", kSdfRadius_m), 1, 1};
   } else if (element.name == "cylinder" || element.name == "capsule") {
     const bool is_cylinder = element.name == "cylinder";
     shape.kind = is_cylinder ? ShapeKind::kCylinder : ShapeKind::kCapsule;
-    shape.size_m = {sdf::child_number(&element, "radius", is_cylinder ? kDefaultRadius_m : kDefaultCapsuleRadius_m), 1,
-                    sdf::child_number(&element, "length", kDefaultLength_m)};
+    shape.size_m = {sdf::child_number(&element, "radius", is_cylinder ? kSdfRadius_m : kSdfCapsuleRadius_m), 1,
+                    sdf::child_number(&element, "length", kSdfLength_m)};
   } else if (element.name == "plane") {
     shape.kind = ShapeKind::kPlane;
     read_plane(context, element, shape);
