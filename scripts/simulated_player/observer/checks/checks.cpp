@@ -64,12 +64,10 @@ std::vector<int> failing_checks(const PlayerParameters& player, std::uint64_t se
 }
 
 void require_admitted(const PlayerParameters& player, std::uint64_t seed) {
-  const std::vector<int> failing = failing_checks(player, seed);
-  if (failing.empty()) return;
-  std::string numbers;
-  for (int check : failing) numbers += (numbers.empty() ? "" : ", ") + std::to_string(check);
-  throw std::runtime_error("simulated player: fails the checks " + numbers +
-                           "; choose another player of the population");
+  const std::vector<int> failing = failing_checks(player, seed, true);
+  if (!failing.empty())
+    throw std::runtime_error("simulated player: fails check " + std::to_string(failing.front()) +
+                             "; choose another player of the population");
 }
 
 }  // namespace tactus::observer

@@ -43,7 +43,7 @@ std::vector<CheckResult> run_checks(const PlayerParameters& player, std::uint64_
 // at the first.
 std::vector<int> failing_checks(const PlayerParameters& player, std::uint64_t seed, bool first_only = false);
 
-// Throws std::runtime_error with the numbers of the failing checks when the player may not be used.
+// Throws std::runtime_error with the number of the first failing check when the player may not be used.
 void require_admitted(const PlayerParameters& player, std::uint64_t seed);
 
 // The checks by topic; run_check calls them.

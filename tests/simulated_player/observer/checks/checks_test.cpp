@@ -96,7 +96,9 @@ TEST_CASE("A player that fails a check is refused with the number of the check")
 }
 
 TEST_CASE("A value that is not a number fails its check") {
-  CheckResult result{.check = 1, .value = std::nan(""), .low = 0, .high = 1};
+  CheckResult result;
+  result.value = std::nan("");
+  result.high = 1;
   CHECK_FALSE(result.passed());
 }
 
