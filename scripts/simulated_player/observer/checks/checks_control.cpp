@@ -8,6 +8,7 @@
 #include "scripts/simulated_player/observer/pointing.h"
 #include "scripts/simulated_player/observer/reach.h"
 #include "scripts/simulated_player/observer/responses.h"
+#include "sync/random/keyed_random.h"
 
 namespace tactus::observer {
 namespace {
@@ -39,19 +40,33 @@ struct Pointing {
   double in_time = 0;  // share of hits before the deadline
 };
 
-// Trials with these widths in one session.
-Pointing point(const PlayerParameters& player, const PointingDef& def, double difficulty_bit, int trials,
-               std::uint64_t seed, double deadline_s = kAny) {
-  PointingSession session(player, def, seed);
+// Sessions of one condition: the belief about a delay differs between them by chance.
+constexpr int kSessions = 4;
+std::vector<PointingSession> sessions_of(const PlayerParameters& player, const PointingDef& def,
+                                         std::uint64_t seed) {
+  std::vector<PointingSession> sessions;
+  for (std::uint64_t i = 0; i < kSessions; ++i) sessions.emplace_back(player, def, sync::mixed(seed, i));
+  return sessions;
+}
+
+// Trials of one difficulty, in turn in each session.
+Pointing point(std::vector<PointingSession>& sessions, double difficulty_bit, int trials,
+               double deadline_s = kAny) {
   Pointing result;
   for (int i = 0; i < trials; ++i) {
-    const PointingTrial t =
-        session.trial(target_width_m(def.distance_m, difficulty_bit), static_cast<std::uint64_t>(i));
+    const PointingTrial t = sessions[static_cast<std::size_t>(i % kSessions)].trial(
+        target_width_m(PointingDef{}.distance_m, difficulty_bit), static_cast<std::uint64_t>(i));
     result.time_s += t.time_s / trials;
     result.errors += !t.hit / static_cast<double>(trials);
     result.in_time += (t.hit && t.time_s <= deadline_s) / static_cast<double>(trials);
   }
   return result;
+}
+
+Pointing point(const PlayerParameters& player, const PointingDef& def, double difficulty_bit, int trials,
+               std::uint64_t seed, double deadline_s = kAny) {
+  auto sessions = sessions_of(player, def, seed);
+  return point(sessions, difficulty_bit, trials, deadline_s);
 }
 
 }  // namespace
@@ -64,18 +79,13 @@ std::vector<CheckResult> check_pointing(const PlayerParameters& player, std::uin
   std::vector<double> slopes, lags, means, errors;
   Line undelayed;
   for (double lag : lags_s) {
-    PointingSession session(player, {.delay_s = lag}, seed);
+    auto sessions = sessions_of(player, {.delay_s = lag}, seed);
     std::vector<double> times;
     double missed = 0;
     for (double difficulty : difficulties) {
-      double time = 0;
-      for (int i = 0; i < trials; ++i) {
-        const PointingTrial t =
-            session.trial(target_width_m(PointingDef{}.distance_m, difficulty), static_cast<std::uint64_t>(i));
-        time += t.time_s / trials;
-        missed += !t.hit / (5.0 * trials);
-      }
-      times.push_back(time);
+      const Pointing result = point(sessions, difficulty, trials);
+      times.push_back(result.time_s);
+      missed += result.errors / static_cast<double>(difficulties.size());
     }
     const Line line = fit_line(difficulties, times);
     if (lag == 0) undelayed = line;
