@@ -74,7 +74,7 @@ int main(int argc, char** argv) try {
       .show_default();
   check.add_option("--seed", seed, "seed of the population and of the experiments").show_default();
   auto admit =
-      app.add_command("admit", "print which players of a population pass all checks; about 5 s for a player");
+      app.add_command("admit", "print which players of a population pass all checks; up to 20 s for a player");
   admit.add_option("--count", count, "number of players").range(1, 1'000'000).show_default();
   admit.add_option("--seed", seed, "seed of the population and of the experiments").show_default();
   if (const auto help = app.parse(argc, argv)) {
