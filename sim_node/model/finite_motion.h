@@ -9,11 +9,16 @@
 
 namespace tactus::sim {
 
+// A sum of finite numbers below 1e300 is finite, and a number that is not finite stays so in a sum. Realtime-safe: yes.
+inline double sum_of_state(const BodyMotion& m) {
+  const Eigen::Vector3d sum = m.position_m + m.centre_m + m.velocity_m_s + m.spin_rad_s;
+  const Eigen::Quaterniond& q = m.orientation;
+  return sum.x() + sum.y() + sum.z() + q.x() + q.y() + q.z() + q.w();
+}
+
 // The first quantity of a body that is not finite, as the subject of a sentence; null: all are finite. Realtime-safe: yes.
 inline const char* infinite_quantity(const BodyMotion& m) {
-  // A sum of finite numbers below 1e300 is finite, and a number that is not finite stays so in a sum.
-  const double sum = m.position_m.sum() + m.centre_m.sum() + m.orientation.coeffs().sum() + m.velocity_m_s.sum() + m.spin_rad_s.sum();
-  if (std::isfinite(sum)) return nullptr;
+  if (std::isfinite(sum_of_state(m))) return nullptr;
   if (!m.position_m.allFinite() || !m.centre_m.allFinite()) return "the position";
   if (!m.orientation.coeffs().allFinite()) return "the orientation";
   if (!m.velocity_m_s.allFinite()) return "the velocity";

@@ -1,6 +1,7 @@
 #include "sim_node/world/simulation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "lcmtypes/vectors.h"
@@ -52,17 +53,22 @@ void Simulation::start(std::int64_t incarnation) try {
   ids_.restart(incarnation);
   collect_group_tools();
   mechanics_->start(group_tools_, events_);
-  require_finite();
+  const std::span<const BodyMotion> motions = mechanics_->motions();
+  for (std::size_t i = 0; i < motions.size(); ++i) sim::require_finite(static_cast<int>(i), motions[i]);
   detect_contacts();
   begin_ = save();
 } catch (const StateNotFinite& e) {
   stop_at(e.body, e.quantity);
 }
 
-// Of the present state, and of the state of bodies that are computed ahead.
+// Of the present state of bodies that move, and of the state of bodies that are computed ahead. Nothing sets a fixed body after the start.
 void Simulation::require_finite() {
   const std::span<const BodyMotion> motions = mechanics_->motions();
-  for (std::size_t i = 0; i < motions.size(); ++i) sim::require_finite(static_cast<int>(i), motions[i]);
+  double sum = 0;
+  for (const BodyMotion& m : motions)
+    if (m.inverse_mass_1_kg != 0) sum += sum_of_state(m);
+  if (!std::isfinite(sum))
+    for (std::size_t i = 0; i < motions.size(); ++i) sim::require_finite(static_cast<int>(i), motions[i]);
   const LookAhead* const ahead = mechanics_->look_ahead();
   if (ahead == nullptr || !ahead->fresh) return;
   for (std::size_t i = 0; i < ahead->bodies.size(); ++i) sim::require_finite(ahead->bodies[i], ahead->motions[i]);
