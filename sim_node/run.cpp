@@ -27,6 +27,7 @@
 #include "sim_node/command/command_queue.h"
 #include "sim_node/command/commander.h"
 #include "sim_node/dual/followed_rate.h"
+#include "sim_node/world/engine.h"
 #include "sim_node/publish/known_processes.h"
 #include "sim_node/publish/publisher.h"
 #include "sim_node/publish/sim_pacer.h"
@@ -49,6 +50,7 @@ sim::Settings settings_of(const sim::WorldDef& world, const std::vector<std::str
   const auto errors =
       sync::apply_settings(settings, sim::setting_fields(), "sim_node", world.settings, from_command_line);
   if (!errors.empty()) throw std::runtime_error(errors.front());
+  if (const std::string error = sim::apply_engine(settings); !error.empty()) throw std::runtime_error(error);
   return settings;
 }
 

@@ -10,6 +10,7 @@
 #include <tactus/tool_def_t.hpp>
 
 #include "lcmtypes/vectors.h"
+#include "sim_node/world/engine.h"
 #include "sim_node/world/simulation.h"
 #include "sim_node/behaviour/single_group.h"
 #include "sim_node/collision/detector.h"
@@ -47,10 +48,11 @@ Vector3d along(const WorldDef& w, const tool_def_t& tool, double t) {
   return to_eigen(path.back().position_m);
 }
 
-Settings settings_of(const WorldDef& world) {
+Settings settings_of(const WorldDef& world, const std::string& engine = "parts") {
   Settings settings;
   settings.visual_thread = "none";  // the ticks are not paced: a separate thread would be late
-  REQUIRE(sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, {}).empty());
+  REQUIRE(sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, {"engine=" + engine}).empty());
+  REQUIRE(apply_engine(settings) == "");
   return settings;
 }
 
@@ -70,14 +72,15 @@ TEST_CASE("Every scene loads without a warning, shows something, and has a hand 
 }
 
 TEST_CASE(
-    "Every scene runs for two seconds: bodies touch, none falls out or flies apart, and no solver "
+    "Every scene runs for two seconds with each engine: bodies touch, none falls out or flies apart, and no solver "
     "complains") {
+  const std::string engine = GENERATE("parts", "ode");
   constexpr double kFastest_m_s = 6, kFarthest_m = 3;  // a fall of 1.8 m; no scene is larger
   for (const auto& file : scenes()) {
-    INFO(file.filename());
+    INFO(file.filename() << " with engine = " << engine);
     std::vector<std::string> warnings;
     const WorldDef w = load_sdf(file, warnings);
-    Simulation s(w, settings_of(w));
+    Simulation s(w, settings_of(w, engine));
     s.start(11);
     solver_failures = 0;
     dSetMessageHandler([](int, const char*, va_list) { ++solver_failures; });
@@ -120,11 +123,13 @@ TEST_CASE("The stack scene stays finite in two groups, also if a contact has no 
 }
 
 TEST_CASE(
-    "Pushing each ball of the dark room into its own hole wins the game") {
+    "Pushing each ball of the dark room into its own hole wins the game with each engine") {
+  const std::string engine = GENERATE("parts", "tactus", "ode");
+  INFO("engine = " << engine);
   std::vector<std::string> warnings;
   const WorldDef w = load_sdf(source_dir() + "/sim_node/scenes/dark_room.sdf", warnings);
   REQUIRE(w.holes.size() == 3);
-  Simulation s(w, settings_of(w));
+  Simulation s(w, settings_of(w, engine));
   s.start(11);
   sim::test::Hand hand{.radius = 0.008, .stiffness = 500, .last = {-0.3, 0, 0.15}};
   Vector3d device(-0.3, 0, 0.15);

@@ -11,6 +11,7 @@
 #include <tactus/contact_t.hpp>
 #include <vector>
 
+#include "sim_node/world/engine.h"
 #include "sim_node/world/simulation.h"
 #include "sim_node/scene/load_sdf.h"
 #include "sync/bus/identity.h"
@@ -29,6 +30,7 @@ inline std::uint64_t state_hash(const std::filesystem::path& scene, const std::v
   settings.visual_thread = "none";  // in a thread of its own, a step may be late
   const auto errors = sync::apply_settings(settings, setting_fields(), "sim_node", world.settings, overrides);
   if (!errors.empty()) throw std::runtime_error(errors.front());
+  if (const std::string error = apply_engine(settings); !error.empty()) throw std::runtime_error(error);
   std::uint64_t hash = sync::kFnv1aBegin;
   const auto add = [&](const void* data, std::size_t size) { hash = sync::fnv1a_64(hash, data, size); };
   const auto message = [&](const auto& m) {
