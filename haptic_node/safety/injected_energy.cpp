@@ -34,7 +34,13 @@ double InjectedEnergy::free_damping_N_s_m(double held_s, double delay_s) const {
 void InjectedEnergy::observe(const Wrench& displayed, const Wrench& computed, const DeviceMotion& motion, double span_s,
                              double stored_J, double dt) {
   apart_s_ = is_zero(displayed) && is_zero(computed) ? apart_s_ + dt : 0;
-  if (apart_s_ > kDisplayGap_s) return reset();
+  if (apart_s_ > kDisplayGap_s) {
+    // Motion in free space is no credit for the next contact.
+    const double apart_s = apart_s_;
+    reset();
+    apart_s_ = apart_s;
+    return;
+  }
   if (!(span_s > 0)) return;
   motion_ = motion, motion_s_ = span_s;
   const double displayed_J = work_J(displayed, motion, span_s);
