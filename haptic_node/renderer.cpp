@@ -39,6 +39,8 @@ NodeRenderer::NodeRenderer(sync::RendererHost& host, const Options& options, Off
       device_forces_(host.bus().queue<device_force_t>(channels::kDeviceForce, 64)),
       touch_(host.endpoint().delayed_snapshots<touch_model_t>(channels::kTouchModel, 1024)),
       events_(host.endpoint().events()),
+      force_stage_(host.endpoint().stage("force")),
+      action_stage_(host.endpoint().stage("action")),
       safety_(safety_limits(settings())),
       quality_(settings()) {
   touch_.on_arrival([this](const touch_model_t& page, sync::HostTime arrival) {
@@ -150,6 +152,9 @@ TickOutput& NodeRenderer::render(sync::HostTime now) {
                         {.delay = endpoint.delay(),
                          .touch_delay = endpoint.profile_delay(),
                          .force_step_N = endpoint.output().value("force_step"),
+                         .force_stage = &force_stage_.operators,
+                         .force_decisions = &force_stage_.decisions,
+                         .action_delay = action_stage_.operators.usual_delay(endpoint.sim_now()),
                          .touch_arrival = only_pointers_ ? std::optional(now) : std::nullopt},
                         quality_.planes());
 }

@@ -56,6 +56,8 @@ class NodeRenderer : public sync::SettingsRenderer<Settings> {
   sync::Queue<device_force_t>& device_forces_;
   sync::ModalityEndpoint::Stream<touch_model_t>& touch_;
   sync::ModalityEndpoint::Events& events_;
+  // Stages of touch of a profile: `force` acts here, `action` in the simulation.
+  sync::ModalityEndpoint::Stage &force_stage_, &action_stage_;
   Safety safety_;  // shared by all scenes
   NodeConfig config_;
   Quality quality_;

@@ -240,8 +240,8 @@ bool valid(const touch_model_t& m) {
 bool valid(const tool_state_t& m) {
   return sane(m.header) && m.tool >= 0 && sane(m.device) && sane(m.proxy) && sane(m.device_velocity_m_s) &&
          sane(m.proxy_velocity_m_s) && sane(m.device_spin_rad_s) && sane(m.proxy_spin_rad_s) && sane(m.force_N) &&
-         sane(m.torque_N_m) && sane(m.transient_N) && sane(m.energy_J) && sane(m.generated_J) && m.coupling >= 0 &&
-         m.coupling <= 1 && m.fade >= 0 && m.fade <= 1 && all_sane(m.constraints);
+         sane(m.torque_N_m) && sane(m.transient_N) && sane(m.energy_J) && sane(m.generated_J) && sane_not_negative(m.injected_J) &&
+         m.coupling >= 0 && m.coupling <= 1 && m.fade >= 0 && m.fade <= 1 && all_sane(m.constraints);
 }
 bool valid(const device_state_t& m) {
   return sane(m.header) && name(m.device) && sane(m.pose) && sane(m.velocity_m_s) && sane(m.spin_rad_s) &&

@@ -4,8 +4,9 @@
 //        NODE_HEALTH      a new process receives every body immediately
 //        ASSET_REQUEST    chunks of the scene that a process lacks
 //        SIM_COMMAND      pause, step, reset, set, push, snapshot, restore
+//        DEGRADATION      the profile; its stage `action` delays TOOL_STATE here
 //   out  TOUCH_MODEL, CONTACT_EVENTS, CONTACTS, WORLD_STATE, GAME_STATE, in this order; SIM_REPLY; SCENE_MANIFEST,
-//        ASSET_CHUNK
+//        ASSET_CHUNK; DEGRADED of the stage `action`
 //
 // When TOOL_STATE is lost, the forces on the bodies fade within 10 ms. A tool has one sender: a second haptic process, and a
 // second simulation of the run, are named in the health and change nothing. A simulation that cannot keep up keeps its
@@ -34,7 +35,10 @@
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_assets.h"
 #include "sim_node/scene/scene_folders.h"
+#include "sim_node/touch/late_hand.h"
 #include "sim_node/touch/tool_senders.h"
+#include "sync/degradation/known_modalities.h"
+#include "sync/node/modality_endpoint.h"
 #include "sync/node/node.h"
 #include "sync/sandbox/sandbox.h"
 #include "sync/node/world_start.h"
@@ -77,6 +81,47 @@ const sync::NodeDescriptor kSimulation{.name = "sim_node",
                                        .fifo_priority = 50,
                                        .about = "Simulates the world of a scene and publishes its contacts.",
                                        .phases = {sync::Phase::kCollision, sync::Phase::kSolve, sync::Phase::kIntegrate}};
+
+// The hands as the world receives them: one sender for each tool, late by the stage `action` of the profile in force.
+class Hands {
+ public:
+  Hands(sync::Node& node, const sim::WorldDef& world)
+      : queue_(node.bus().queue<tool_state_t>(channels::kToolState, 64)),
+        senders_(world.tools, node.options().run_id),
+        endpoint_(node, {.name = kSimulation.name, .modality = modality(), .about = ""}),
+        stage_(endpoint_.stage(kStage)) {
+    endpoint_.set_scene_profile(world.profile);
+  }
+
+  // The messages that reach the world by now, in order; valid until the next call. time: of the world.
+  const std::vector<tool_state_t>& receive(sync::HostTime now, sync::SimTime time) {
+    endpoint_.step(now);
+    sync::HostTime received = now;  // also accepts the messages that arrive while it reads
+    while (auto m = queue_.pop()) {
+      received = std::max(received, m->arrival);
+      if (senders_.accept(m->message, m->arrival)) late_.push(std::move(m->message), m->arrival, stage_.operators, &stage_.decisions);
+    }
+    released_.clear();
+    late_.release(received, time, stage_.operators, released_);
+    endpoint_.publish(now);
+    return released_;
+  }
+  const sim::ToolSenders& senders() const { return senders_; }
+
+ private:
+  static constexpr const char* kStage = "action";
+  static std::string modality() {
+    const sync::KnownModality* known = sync::modality_with_stage(kStage);
+    return known ? known->name : "";
+  }
+
+  sync::Queue<tool_state_t>& queue_;
+  sim::ToolSenders senders_;
+  sync::ModalityEndpoint endpoint_;
+  sync::ModalityEndpoint::Stage& stage_;
+  sim::LateHand late_;
+  std::vector<tool_state_t> released_;
+};
 
 // Publishes the state after a step, or while the simulation is paused (steps: false). due: deadline of this tick, which has no
 // jitter, unlike the wake-up.
@@ -143,6 +188,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   app.add_option("SCENE", scene, "SDF file of the world").required().existing_file();
   sim::add_scene_folder_option(app, folders);
   app.add_option("--await", awaited, "name of a process that must have its scene before the world begins, once for each").one_value_per_use();
+  app.add_option("--degrade", options.degrade, "degradation profile (XML); its stage action delays the hands on their way to the world");
   sync::parse_or_exit(app, kSimulation.name, argc, argv);
 
   const sim::WorldDef world = loaded_world ? *loaded_world : read_world(scene, folders);
@@ -155,16 +201,14 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
   const auto start_publishing = [&] { world_publisher.emplace(node.bus(), settings, simulation.step_length()); };
   start_publishing();
   sim::Commander commander(simulation, world, options.out);
-  auto& tool_states = node.bus().queue<tool_state_t>(channels::kToolState, 64);
   auto& healths = node.bus().queue<node_health_t>(channels::kNodeHealth, 256);
   auto& commands = node.bus().queue<sim_command_t>(channels::kSimCommand, 256);
   bool restart_pending = false;  // the world was reset or restored and continues at restart_time
   sync::HostTime restart_time{};
   sim::KnownProcesses processes(options.name, options.run_id);
   processes.add_own(node.bus().identity().incarnation);
-  sim::ToolSenders senders(world.tools, options.run_id);
+  Hands hands(node, world);
   sim::FollowedRate followed_rate(settings.visual_follows);
-  std::vector<tool_state_t> new_messages;
 
   add_tags(node.tags(), simulation, world_publisher);
 
@@ -176,9 +220,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
 
   while (node.running()) {
     const sync::HostTime now = node.wait();
-    new_messages.clear();
-    while (auto m = tool_states.pop())
-      if (senders.accept(m->message, m->arrival)) new_messages.push_back(std::move(m->message));
+    const std::vector<tool_state_t>& new_messages = hands.receive(now, simulation.now());
     while (const auto m = healths.pop()) {
       if (m->message.header.run_id != options.run_id) continue;
       if (const auto rate_Hz = followed_rate.on_message(m->message, m->arrival)) {
@@ -210,7 +252,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
     steps ? simulation.step(new_messages) : simulation.hold(new_messages);
     publish_state(*world_publisher, simulation, steps, node.deadlines().next() - simulation.step_length());
     node.set_realtime_factor(world_publisher->pacer.realtime_factor());
-    node.set_state(node_health_t::RUNNING, status_of(commander, senders, processes, now));
+    node.set_state(node_health_t::RUNNING, status_of(commander, hands.senders(), processes, now));
   }
   return 0;
 } catch (const std::exception& e) {

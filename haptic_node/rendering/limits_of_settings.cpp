@@ -35,6 +35,11 @@ WallLimits wall_limits(const Settings& s) {
           s.device_turn_damping_Nms_rad};
 }
 
+InjectedLimits injected_limits(const Settings& s) {
+  return {s.generated_limit_J,   s.device_mass_kg,      s.device_inertia_kgm2, s.device_damping_Ns_m,
+          s.device_turn_damping_Nms_rad, s.stiffness_limit_N_m};
+}
+
 TransientShape transient_shape(const Settings& s) {
   const double fastest_Hz = s.rate_Hz / kTicksPerPeriod;
   return {s.transient_gain,

@@ -7,6 +7,7 @@
 #include "haptic_node/contact/surfaces.h"
 #include "haptic_node/rendering/coupling.h"
 #include "haptic_node/rendering/transient.h"
+#include "haptic_node/safety/injected_energy.h"
 #include "haptic_node/safety/passivity.h"
 #include "haptic_node/safety/wall_energy.h"
 #include "haptic_node/settings.gen.h"
@@ -21,6 +22,7 @@ inline double hold_of_push_s(double rate_Hz, double step_s) { return std::max(0.
 // step_s: of the simulation.
 PassivityLimits passivity_limits(const Settings& s, double step_s);
 WallLimits wall_limits(const Settings& s);
+InjectedLimits injected_limits(const Settings& s);
 TransientShape transient_shape(const Settings& s);
 
 }  // namespace tactus::haptic

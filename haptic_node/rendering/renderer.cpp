@@ -19,11 +19,6 @@ namespace {
 
 // Time until a hand that was inside when touch began presses a surface: a touch model, and two in reserve.
 constexpr double kFirstPress_s = 0.003;
-constexpr double kMaxReported_J = 1e6;  // the range of the message
-
-// Touch that is softer than this share of that of an immediate device is reported. Design: 0.7, as for the largest
-// difference of stiffness that passes unnoticed in a comparison (unverified).
-constexpr double kSoftened = 0.7;
 
 // Keeps the largest forces, up to the number that a message holds; the shares of the others go to these.
 void keep_largest(std::span<Eigen::Vector3d> forces) {
@@ -57,6 +52,7 @@ Renderer::Renderer(const scene_t& scene, int tool, const Settings& settings, Saf
       walls_(wall_limits(settings)),
       transients_(transient_shape(settings)),
       safety_(safety),
+      force_stage_(settings),
       fade_(settings.stale_after_s, settings.fade_s) {
   for (const material_def_t& m : scene.materials) youngs_modulus_Pa_.push_back(m.youngs_modulus_Pa);
   forces_.reserve(kMaxHalfSpaces);
@@ -82,10 +78,7 @@ void Renderer::change(const Settings& settings) {
   }
   passivity_.change(passivity_limits(settings, step_s_));
   walls_.change(wall_limits(settings));
-}
-
-sync::Nanoseconds Renderer::uncertainty() const {
-  return sync::from_seconds(period_s_ / 2 + settings_.device_uncertainty_s);
+  force_stage_.change(settings);
 }
 
 void Renderer::update_device(const TickInput& in) {
@@ -116,6 +109,7 @@ void Renderer::restart_touch() {
   motion_ = {};
   motion_.loop = device_.loop;
   commands_.clear();
+  force_stage_.restart();
   passivity_.drop_commands();
   walls_.reset();
   force_crossfade_.reset();
@@ -168,17 +162,9 @@ Gains Renderer::gains(const Surface& s) const {
     stiffness_N_m =
         std::min(stiffness_N_m, turning_limit_N_m(settings_, force_method_.lever_m(), hold_s(), delay_s));
   return coupling_gains(stiffness_N_m, s.damping_N_s_m, s.effective_mass_kg,
-                        loop_delay_.value_s(step_s_, period_s_) + hold_of_push_s(settings_.rate_Hz, step_s_) + device_s,
+                        loop_delay_.value_s(step_s_, period_s_) + hold_of_push_s(settings_.rate_Hz, step_s_) + device_s +
+                            action_delay_s_,
                         hold_s(), coupling_, delay_s);
-}
-
-Renderer::DeviceLimit Renderer::device_limit() const {
-  constexpr double kRigid_N_m = 1e12, kFixed_kg = 1e10;
-  const auto wall = [&](double hold, double delay) {
-    return coupling_gains(kRigid_N_m, 0, kFixed_kg, period_s_, hold, coupling_, delay).stiffness_N_m;
-  };
-  const double limit = wall(hold_s(), device_.loop.delay_s);
-  return {device_.loop, limit, limit < kSoftened * wall(period_s_, 0)};
 }
 
 Wrench Renderer::constraint_wrench(double force_step_N, double dt, double held_s) {
@@ -194,9 +180,11 @@ Wrench Renderer::constraint_wrench(double force_step_N, double dt, double held_s
   double relief_J = Reliefs::half_energy_of_heights(surfaces_.list());
   force_method_.solve(surfaces_.list(), device_, dt);
   relief_J += Reliefs::half_energy_of_heights(surfaces_.list());
-  passivity_.observe(force_method_.stored_energy(surfaces_.list()), motion_.moved_m, motion_.turned_rad, model_age_s_,
-                     held_s, motion_.loop);
+  const StoredEnergy bodies = force_method_.stored_energy(surfaces_.list());
+  // The forces of the hand reach the bodies, and their reports, later by the stage `action`.
+  passivity_.observe(bodies, motion_.moved_m, motion_.turned_rad, model_age_s_ + action_delay_s_, held_s, motion_.loop);
   const StoredEnergy walls = force_method_.stored_energy(surfaces_.list(), ForceMethod::Partner::kWalls);
+  stored_J_ = bodies.energy_J + walls.energy_J;
   if (!walls.pressed && since_begin_s_ > kFirstPress_s + 3 * period_s_) returning_s_ = 0;
   since_begin_s_ += dt;
   const double appeared_J = returning_s_ > 0 ? walls.appeared_J : 0;
@@ -258,16 +246,41 @@ WallForce Renderer::force_of_walls(const Wrench& constraint) {
 }
 
 // Applies the limits of safety. The energy account pairs the motion with the force that acted during it.
-Wrench Renderer::limited(const Wrench& wanted, double dt) {
+Wrench Renderer::limited(const Wrench& wanted, double dt, ForceOutput to) {
   const double now_s = sync::to_seconds(last_.time_since_epoch());
   const DeviceLoop& loop = motion_.loop;
   // The force of the previous scene acts until the first command of this one.
-  if (commands_.empty()) commands_.record(std::numeric_limits<double>::lowest(), safety_.released());
+  if (to.commands.empty()) to.commands.record(std::numeric_limits<double>::lowest(), to.safety.released());
   if (!loop.immediate())
-    safety_.set_acting(acting_in_tick(commands_, now_s, dt, loop), std::max(loop.span_s, dt));
-  const Wrench command = safety_.limit(wanted, motion_.moved_m, motion_.turned_rad, dt);
-  commands_.record(now_s, command);
+    to.safety.set_acting(acting_in_tick(to.commands, now_s, dt, loop), std::max(loop.span_s, dt));
+  const Wrench command = to.safety.limit(wanted, motion_.moved_m, motion_.turned_rad, dt);
+  to.commands.record(now_s, command);
   return command;
+}
+
+Renderer::Commanded Renderer::output(const Wrench& wanted, double scale, const Eigen::Vector3d& transient_N, double dt) {
+  const ForceOutput hand{safety_, commands_};
+  const bool staged = force_stage_.active();
+  if (staged) force_stage_.observe(stored_J_, motion_, commands_, dt);
+  const ForceOutput bodies = staged ? force_stage_.bodies() : hand;
+  const Wrench all = limited(wanted, dt, bodies);
+  const Wrench& released = bodies.safety.released();
+  const Eigen::Vector3d own_N = all.force_N - released.force_N;
+  const double wanted_N = wanted.force_N.norm();
+  const Eigen::Vector3d felt_N = wanted_N > 0 ? own_N.norm() / wanted_N * scale * transient_N : own_N;
+  const Commanded given{{own_N - felt_N, all.torque_N_m - released.torque_N_m}, felt_N};
+  Wrench displayed = all;
+  shown_transient_N_ = felt_N;
+  if (staged) {
+    const Wrench shown = force_stage_.display(wanted, all, scale * transient_N, force_scale(), motion_, dt);
+    displayed = limited(shown, dt, hand);
+    const double shown_N = shown.force_N.norm();
+    const double kept = shown_N > 0 ? (displayed.force_N - safety_.released().force_N).norm() / shown_N : 0;
+    shown_transient_N_ = kept * force_stage_.transient_N();
+  }
+  out_.force_N = displayed.force_N;
+  out_.torque_N_m = displayed.torque_N_m;
+  return given;
 }
 
 // Everything that changes the force acts on constraint and transient in one proportion, so that the bodies receive
@@ -301,13 +314,7 @@ Renderer::Commanded Renderer::command(Wrench constraint, Eigen::Vector3d transie
     transient_N *= within;
   }
   const Wrench wanted{scale * (constraint.force_N + transient_N), force_scale() * constraint.torque_N_m};
-  const Wrench all = limited(wanted, dt);
-  out_.force_N = all.force_N;
-  out_.torque_N_m = all.torque_N_m;
-  const Eigen::Vector3d own_N = all.force_N - safety_.released().force_N;
-  const double wanted_N = wanted.force_N.norm();
-  const Eigen::Vector3d felt_N = wanted_N > 0 ? own_N.norm() / wanted_N * scale * transient_N : own_N;
-  return {{own_N - felt_N, all.torque_N_m - safety_.released().torque_N_m}, felt_N};
+  return output(wanted, scale, transient_N, dt);
 }
 
 // Splits the constraint force that remains after all limits over the surfaces, so that the bodies feel exactly the
@@ -325,39 +332,6 @@ void Renderer::distribute(const Wrench& felt_constraint) {
   }
 }
 
-sync::SampleStatus Renderer::status(const TickInput& in) const {
-  if (!model_time_ || !in.touch_arrival) return sync::SampleStatus::kNone;
-  if (fade_.lost()) return sync::SampleStatus::kStale;
-  if (!in.map) return sync::SampleStatus::kHeld;
-  const double age_s = sync::to_seconds(in.map->to_sim(in.now) - *model_time_);
-  if (age_s == 0) return sync::SampleStatus::kExact;
-  return age_s <= settings_.extrapolate_at_most_s ? sync::SampleStatus::kExtrapolated : sync::SampleStatus::kHeld;
-}
-
-void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_N) {
-  tool_state_t& m = out_.state;
-  m.header.sim_time_ns = in.map ? std::max<std::int64_t>(0, sync::to_ns(in.map->to_sim(in.now))) : -1;
-  m.device.position_m = to_vec3(device_.position);
-  m.device.orientation = to_quat(device_.orientation);
-  m.proxy.orientation = to_quat(force_method_.orientation());
-  m.proxy.position_m = to_vec3(force_method_.position());
-  m.device_velocity_m_s = to_vec3f(device_.velocity);
-  m.proxy_velocity_m_s = to_vec3f(force_method_.velocity());
-  m.device_spin_rad_s = to_vec3f(device_.spin);
-  m.proxy_spin_rad_s = to_vec3f(force_method_.spin());
-  m.force_N = to_vec3f(out_.force_N);
-  m.torque_N_m = to_vec3f(out_.torque_N_m);
-  m.transient_N = to_vec3f(transient_N);
-  m.energy_J = static_cast<float>(safety_.energy_J());
-  m.generated_J = static_cast<float>(std::min(passivity_.generated_J() + walls_.generated_J(), kMaxReported_J));
-  m.coupling = static_cast<float>(std::min(passivity_.factor(), walls_.factor()));
-  m.touch_status = static_cast<std::int8_t>(status(in));
-  m.fade = static_cast<float>(force_scale());
-  m.buttons = device_.buttons;
-  impulses_.write_constraints(in.now, m.constraints);
-  m.constraint_count = static_cast<std::int32_t>(m.constraints.size());
-}
-
 TickOutput& Renderer::step(const TickInput& in) {
   out_.reports.clear();
   update_device(in);
@@ -368,6 +342,9 @@ TickOutput& Renderer::step(const TickInput& in) {
   const double dt = gap ? period_s_ : held_s;
   transients_.add_felt_impulse(held_s * felt_transient_N_);
   if (gap) restart_touch();
+  const sync::SimTime world = in.map ? in.map->to_sim(in.now) : sync::SimTime{};
+  force_stage_.begin_tick(in.now, world, in.force_stage, in.force_decisions, safety_, commands_);
+  action_delay_s_ = in.action_delay_s;
   safety_.begin_tick(in.now);
   last_ = in.now;
 
@@ -376,7 +353,10 @@ TickOutput& Renderer::step(const TickInput& in) {
   const Wrench constraint = constraint_wrench(in.force_step_N, dt, held_s);
   const bool felt = force_scale() > 0;
   const Eigen::Vector3d transient = transients_.step(in.now, period_s_, felt, uncertainty(), out_.reports);
-  if (!device_.lost) safety_.set_position(device_.position);
+  if (!device_.lost) {
+    safety_.set_position(device_.position);
+    force_stage_.set_position(device_.position);
+  }
   const Commanded commanded = command(constraint, transient, in.force_step_N, dt);
   felt_transient_N_ = commanded.transient_N;
   distribute(commanded.constraint);
@@ -387,7 +367,8 @@ TickOutput& Renderer::step(const TickInput& in) {
   const auto known = [this](std::int64_t contact) { return surfaces_.find(contact) != nullptr; };
   const auto shown = in.map && model_time_ ? std::optional(in.map->to_host(*model_time_)) : std::nullopt;
   pending_onsets_.step({in.now, shown, in.touch_delay, uncertainty(), known}, impulses_, out_.reports);
-  fill_state(in, commanded.transient_N);
+  force_stage_.delay(out_.reports);
+  fill_state(in, shown_transient_N_);
   return out_;
 }
 

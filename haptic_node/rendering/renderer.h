@@ -20,6 +20,7 @@
 #include "haptic_node/rendering/coupling.h"
 #include "haptic_node/rendering/force_crossfade.h"
 #include "haptic_node/rendering/force_method.h"
+#include "haptic_node/rendering/force_stage.h"
 #include "haptic_node/rendering/transient.h"
 #include "haptic_node/safety/passivity.h"
 #include "haptic_node/safety/safety.h"
@@ -46,6 +47,11 @@ struct TickInput {
   sync::Nanoseconds transient_delay{0}, touch_delay{0};
   // The force is commanded in steps of this size; 0: no steps.
   double force_step_N = 0;
+  // Operators of the stage `force`, and the list for their decisions; null: none.
+  sync::OperatorChain* force_stage = nullptr;
+  sync::Decisions* force_decisions = nullptr;
+  // Time by which the stage `action` delays the motion of the hand on its way to the world, s.
+  double action_delay_s = 0;
   // Number of planes of a touch model that are considered.
   std::size_t planes = Surfaces::kMaxPresent;
   // Contact events that have become due; each is passed exactly once.
@@ -101,7 +107,7 @@ class Renderer {
   // Period for which a force is held, s.
   double hold_s() const { return std::max(period_s_, device_.loop.period_s); }
   Gains gains(const Surface& s) const;
-  Wrench limited(const Wrench& wanted, double dt);
+  Wrench limited(const Wrench& wanted, double dt, ForceOutput to);
   // Surfaces that appear now may be above a hand that is already inside. A jump of 10 mm is followed within four recovery
   // times (surfaces.h).
   void begin_touch() {
@@ -115,6 +121,9 @@ class Renderer {
   Hit hit_of(const contact_event_t& e, sync::HostTime scheduled) const;
   Wrench constraint_wrench(double force_step_N, double dt, double held_s);
   WallForce force_of_walls(const Wrench& constraint);
+  // Displays the wrench of a tick to the hand, and returns the wrench whose opposite the bodies receive, both within all limits.
+  // scale: factor on transient_N that `wanted` contains.
+  Commanded output(const Wrench& wanted, double scale, const Eigen::Vector3d& transient_N, double dt);
   Commanded command(Wrench constraint, Eigen::Vector3d transient_N, double force_step_N, double dt);
   void distribute(const Wrench& felt_constraint);
   void fill_state(const TickInput& in, const Eigen::Vector3d& transient_N);
@@ -139,6 +148,7 @@ class Renderer {
   Transients transients_;
   Safety& safety_;
   ForceHistory commands_;  // to the device
+  ForceStage force_stage_;
   Fade fade_;
   ContactImpulses impulses_;
   PendingOnsets pending_onsets_;
@@ -150,9 +160,11 @@ class Renderer {
   double rounded_share_ = 1;  // energy of the springs with rounded forces, in the last tick, relative to without
   double since_begin_s_ = 0, returning_s_ = 0;  // remaining time in which surfaces appear because touch begins or returns
   DeviceMotion motion_;  // since the last tick
-  Eigen::Vector3d felt_transient_N_ = Eigen::Vector3d::Zero();  // of the last tick
+  // Of the last tick: the part of hit transients in the reaction of the bodies, and in the force on the hand.
+  Eigen::Vector3d felt_transient_N_ = Eigen::Vector3d::Zero(), shown_transient_N_ = Eigen::Vector3d::Zero();
   std::optional<sync::SimTime> model_time_;
-  double model_age_s_ = 0;
+  double model_age_s_ = 0, action_delay_s_ = 0;
+  double stored_J_ = 0;  // energy in all springs of the coupling, in the last tick
   std::vector<Eigen::Vector3d> forces_;  // of each surface, before the limits
   std::vector<Eigen::Vector3d> arms_;    // from the proxy to each contact, if a torque is rendered
   std::vector<ContactForce> felt_;       // of each surface, as commanded

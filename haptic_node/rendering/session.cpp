@@ -84,6 +84,9 @@ TickOutput& Session::step(sync::HostTime now, const Degraded& degraded, std::siz
   in.transient_delay = degraded.delay;
   in.touch_delay = degraded.touch_delay;
   in.force_step_N = degraded.force_step_N;
+  in.force_stage = degraded.force_stage;
+  in.force_decisions = degraded.force_decisions;
+  in.action_delay_s = sync::to_seconds(degraded.action_delay);
   in.planes = planes;
   rendered_.clear();
   if (in.map) rendered_.swap(events_);

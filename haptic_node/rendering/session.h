@@ -27,6 +27,9 @@ struct Degraded {
   sync::Nanoseconds delay{0};        // of hit transients, in addition to the setting
   sync::Nanoseconds touch_delay{0};  // intended delay of the touch models
   double force_step_N = 0;           // step of the commanded force; 0: no steps
+  sync::OperatorChain* force_stage = nullptr;  // operators of the stage `force`, and the list for their decisions
+  sync::Decisions* force_decisions = nullptr;
+  sync::Nanoseconds action_delay{0};  // of the hand on its way to the world, by the stage `action`
   // Replaces the measured arrival of the newest touch model (Session::observe_arrival); for tools that need none.
   std::optional<sync::HostTime> touch_arrival;
 };

@@ -29,6 +29,7 @@ inline void tag(sync::Tags& tags, const tool_state_t& state) {
     return std::hypot(d.x - p.x, d.y - p.y, d.z - p.z);
   });
   tags.add("energy", "J", &state.energy_J);
+  tags.add("injected", "J", &state.injected_J);
 }
 
 }  // namespace tactus::haptic

@@ -1,8 +1,6 @@
 #include "haptic_node/safety/wall_energy.h"
 
-#include <cmath>
-
-#include "haptic_node/safety/hand_limits.h"
+#include "haptic_node/safety/motion_work.h"
 
 namespace tactus::haptic {
 namespace {
@@ -22,21 +20,8 @@ constexpr double kStart_J = 1e-5;
 // a loop lags so far that its walls also return the allowance. Design: twice the tick of 1 kHz.
 constexpr double kSlow_s = 0.002;
 
-double work_J(const WallForce& f, const DeviceMotion& motion, double dt) {
-  const bool moved = motion.moved_m.allFinite() && motion.moved_m.norm() <= kMaxHandSpeed_m_s * dt;
-  const bool turned = motion.turned_rad.allFinite() && motion.turned_rad.norm() <= kMaxHandSpin_rad_s * dt;
-  const Wrench plain = f.plain();
-  return (moved ? plain.force_N.dot(motion.moved_m) : 0) + (turned ? plain.torque_N_m.dot(motion.turned_rad) : 0) -
-         f.power_W * dt;
-}
-
-// Twice the distance, m/N, that a constant force moves a mass with a damper from rest: twice, because its speed at the
-// begin may be higher than the mean of the last motion by as much.
-double twice_moved(double seconds, double mass_kg, double damping_N_s_m) {
-  const double x = seconds * damping_N_s_m / mass_kg;
-  // (x - 1 + exp(-x)) / x^2, by its series where the difference would cancel.
-  const double share = x < 1e-3 ? 0.5 - x / 6 : (x + std::expm1(-x)) / (x * x);
-  return 2 * share * seconds * seconds / mass_kg;
+double wall_work_J(const WallForce& f, const DeviceMotion& motion, double dt) {
+  return work_J(f.plain(), motion, dt) - f.power_W * dt;
 }
 
 }  // namespace
@@ -55,7 +40,7 @@ void WallEnergy::observe(double springs_J, bool pressed, const DeviceMotion& mot
                          double relief_J) {
   time_s_ += held_s;
   const double span_s = motion.loop.immediate() ? held_s : motion.loop.span_s;
-  const double given_J = work_J(acting_in_tick(commands_, time_s_, held_s, motion.loop), motion, span_s);
+  const double given_J = wall_work_J(acting_in_tick(commands_, time_s_, held_s, motion.loop), motion, span_s);
   if (span_s > 0) motion_ = motion, motion_s_ = span_s;
   balance_J_ += relief_J - given_J;
   credit_J_ += relief_J - given_J;
@@ -89,7 +74,7 @@ double WallEnergy::brake(const WallForce& next, const DeviceMotion& last, double
           twice_moved(held_s, limits_.device_mass_kg, limits_.device_damping_N_s_m) +
       std::max(0.0, all.torque_N_m.dot(free.torque_N_m)) *
           twice_moved(held_s, limits_.device_inertia_kg_m2, limits_.device_turn_damping_N_m_s_rad);
-  const double moved_J = work_J(next, during, held_s), given_J = moved_J + accelerated_J;
+  const double moved_J = wall_work_J(next, during, held_s), given_J = moved_J + accelerated_J;
   const double credit_J = credit_J_ + (slow ? limits_.allowance_J : std::max(0.0, limits_.allowance_J - kBegin_J));
   const double left_J = std::max(0.0, moved_J > 0 && !slow ? kReturned * credit_J : credit_J + kStart_J);
   return given_J > left_J ? left_J / given_J : 1;

@@ -27,6 +27,7 @@
 #include "haptic_node/contact/surfaces.h"
 #include "haptic_node/devices/device.h"
 #include "haptic_node/safety/acting_force.h"
+#include "haptic_node/safety/motion_work.h"
 
 namespace tactus::haptic {
 
@@ -50,12 +51,6 @@ struct WallLimits {
 inline WallForce plus_scaled(const WallForce& a, const WallForce& b, double scale) {
   return {plus_scaled(a.wrench, b.wrench, scale), plus_scaled(a.tilt, b.tilt, scale), a.power_W + scale * b.power_W};
 }
-
-// Motion of the device that a tick reports, and its timing.
-struct DeviceMotion {
-  Eigen::Vector3d moved_m = Eigen::Vector3d::Zero(), turned_rad = Eigen::Vector3d::Zero();
-  DeviceLoop loop{};
-};
 
 class WallEnergy {
  public:

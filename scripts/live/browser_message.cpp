@@ -40,9 +40,11 @@ std::string text(const json& j, std::size_t max) {
   return s;
 }
 
+// A modality, or "MODALITY:STAGE".
 bool is_modality_name(const std::string& name) {
-  return std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  return std::count(name.begin(), name.end(), ':') <= 1 && name.front() != ':' && name.back() != ':' &&
+         std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == ':';
   });
 }
 

@@ -2,11 +2,13 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
+#include "sync/degradation/known_modalities.h"
 #include "sync/degradation/profile.h"
 #include "sync/degradation/profile_exchange.h"
 #include "sync/text/printable.h"
@@ -26,6 +28,17 @@ const std::string& or_empty(const std::string& profile) {
 
 bool has_value(const XMLElement& e, const char* name) { return e.Attribute(name) != nullptr; }
 
+// The key of the sliders of a rule: its modality, and its stage after a colon; the stage of the input has no name.
+std::string key_of(const XMLElement& e) {
+  const char* const stage = e.Attribute("stage");
+  if (stage == nullptr || std::string(stage).empty()) return e.Attribute("modality");
+  const sync::KnownModality* known = sync::known_modality(e.Attribute("modality"));
+  const bool is_input = known && std::any_of(known->stages.begin(), known->stages.end(), [&](const sync::StageDef& s) {
+                          return s.name == stage && s.kind == sync::StageKind::kInput;
+                        });
+  return e.Attribute("modality") + (is_input ? std::string() : ":" + std::string(stage));
+}
+
 // True for a rule that applies at all times and to all contacts.
 bool is_unconditional(const XMLElement& e) {
   return !has_value(e, "from") && !has_value(e, "until") && !has_value(e, "bodies") && !has_value(e, "material");
@@ -33,7 +46,7 @@ bool is_unconditional(const XMLElement& e) {
 
 XMLElement* first_element(XMLElement& root, const std::string& sense, const char* attribute) {
   for (XMLElement* e = root.FirstChildElement("degrade"); e; e = e->NextSiblingElement("degrade"))
-    if (e->Attribute("modality", sense.c_str()) && is_unconditional(*e) && (attribute == nullptr || has_value(*e, attribute)))
+    if (key_of(*e) == sense && is_unconditional(*e) && (attribute == nullptr || has_value(*e, attribute)))
       return e;
   return nullptr;
 }
@@ -56,7 +69,7 @@ bool nearly_equal(double a, double b) { return std::abs(a - b) <= 1e-9 + 1e-6 * 
 // False for an element without any operator left, which is not a valid rule.
 bool has_operator(const XMLElement& e) {
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next())
-    if (const std::string name = a->Name(); name != "modality" && name != "conceal") return true;
+    if (const std::string name = a->Name(); name != "modality" && name != "stage" && name != "conceal") return true;
   return false;
 }
 
@@ -71,7 +84,9 @@ void set(XMLElement& root, const std::string& sense, const char* attribute, cons
   if (e == nullptr) e = first_element(root, sense, nullptr);
   if (e == nullptr) {
     e = root.InsertNewChildElement("degrade");
-    e->SetAttribute("modality", sense.c_str());
+    const std::size_t colon = sense.find(':');
+    e->SetAttribute("modality", sense.substr(0, colon).c_str());
+    if (colon != sense.npos) e->SetAttribute("stage", sense.substr(colon + 1).c_str());
   }
   e->SetAttribute(attribute, value.c_str());
 }
@@ -122,12 +137,12 @@ std::map<std::string, SliderState> slider_states(XMLElement& root) {
   std::map<std::string, int> elements;
   std::map<std::string, SliderState> out;
   for (XMLElement* e = root.FirstChildElement("degrade"); e; e = e->NextSiblingElement("degrade")) {
-    const std::string sense = e->Attribute("modality");
+    const std::string sense = key_of(*e);
     SliderState& s = out[sense];
     s.more = s.more || ++elements[sense] > 1 || !is_unconditional(*e);
     for (const tinyxml2::XMLAttribute* a = e->FirstAttribute(); a; a = a->Next())
       if (const std::string name = a->Name();
-          name != "modality" && name != "delay" && name != "rate" && name != "loss")
+          name != "modality" && name != "stage" && name != "delay" && name != "rate" && name != "loss")
         s.more = true;
   }
   for (auto& [sense, s] : out) {
@@ -150,7 +165,11 @@ nlohmann::json degradation_json(const std::string& profile) {
                                       {"rate_Hz", s.sliders.rate_Hz},
                                       {"loss", s.sliders.loss},
                                       {"more", s.more}};
-  return {{"name", sync::printable(profile.empty() ? "" : name)}, {"senses", senses}};
+  nlohmann::json stages = nlohmann::json::array();
+  for (const sync::KnownModality& m : sync::known_modalities())
+    for (const sync::StageDef& s : m.stages)
+      if (s.kind != sync::StageKind::kInput) stages.push_back(m.name + ":" + s.name);
+  return {{"name", sync::printable(profile.empty() ? "" : name)}, {"senses", senses}, {"stages", stages}};
 }
 
 std::string with_sliders(const std::string& profile, const std::map<std::string, Sliders>& senses) {

@@ -10,8 +10,8 @@
 
 namespace tactus::live {
 
-// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}}, as sent to pages: for each modality the first values that
-// apply at all times and to all contacts. more: the profile has more operators of this modality than its sliders show. Throws
+// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}, "stages": [sense, ...]}, as sent to pages: for each modality
+// the first values that apply at all times and to all contacts. A stage of a modality is a sense "MODALITY:STAGE"; stages: all. more: the profile has more operators of this modality than its sliders show. Throws
 // std::invalid_argument with one sentence for an invalid profile; "" degrades nothing.
 nlohmann::json degradation_json(const std::string& profile);
 

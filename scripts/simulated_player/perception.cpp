@@ -33,6 +33,8 @@ Perception::Perception(sync::Node& node, Rules rules, double frame_rate_Hz)
     : rules_(std::move(rules)),
       eyes_(node, observed_node("visual_node", "visual", int{node_health_t::EXPECTS_BEGIN} | node_health_t::EXPECTS_HIT)),
       ears_(node, observed_node("audio_node", "audio", node_health_t::EXPECTS_HIT)),
+      hand_(node, observed_node("participant", "haptic", 0)),
+      percept_(hand_.stage("percept")),
       healths_(node.bus().queue<node_health_t>(channels::kNodeHealth, 256)),
       world_(eyes_.snapshots<world_state_t>(channels::kWorldState, 4096)),
       events_(ears_.events()),
@@ -45,10 +47,11 @@ Perception::Perception(sync::Node& node, Rules rules, double frame_rate_Hz)
 void Perception::set_scene(const scene_t& scene) {
   eyes_.set_scene(scene);
   ears_.set_scene(scene);
+  hand_.set_scene(scene);
 }
 
 Percept Perception::perceive(sync::HostTime now) {
-  eyes_.step(now), ears_.step(now);
+  eyes_.step(now), ears_.step(now), hand_.step(now);
   bodies_.extend_history(eyes_.delay()), contacts_.extend_history(ears_.delay());
   while (const auto m = world_.pop()) bodies_.push(m->message, m->arrival);
   eyes_.publish(now), ears_.publish(now);
@@ -60,6 +63,16 @@ Percept Perception::perceive(sync::HostTime now) {
   percept.balls_m = visible_balls_m_;
   update_hearing(now, percept);
   return percept;
+}
+
+Eigen::Vector3d Perception::felt_N(sync::HostTime now, const Eigen::Vector3d& force_N) {
+  const auto map = bodies_.map(now);
+  sync::ForceSample sample;
+  sample.force_N = force_N;
+  const Eigen::Vector3d felt =
+      touch_.step(now, map ? map->to_sim(now) : sync::SimTime{}, sample, percept_.operators, &percept_.decisions).force_N;
+  hand_.publish(now);
+  return felt;
 }
 
 bool Perception::rendered(const std::string& modality, sync::HostTime now) const {

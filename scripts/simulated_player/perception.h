@@ -1,5 +1,6 @@
 // The percepts of a user, assembled from the output of the cluster: sight from the pictures and hearing from the sounds, at
-// the time of their presentation. The degradations of a profile apply to them. Without a visual node there is no sight.
+// the time of their presentation, and touch from the force of the device. The degradations of a profile apply to them. Without
+// a visual node there is no sight.
 #pragma once
 
 #include <map>
@@ -12,6 +13,7 @@
 
 #include "scripts/simulated_player/player.h"
 #include "scripts/simulated_player/rules.h"
+#include "sync/degradation/stage_signal.h"
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/contact_stream.h"
 #include "sync/node/modality_endpoint.h"
@@ -26,6 +28,9 @@ class Perception {
   void set_scene(const scene_t& scene);
   // Call it once a tick. Sight and hearing at `now`; the caller adds the hand and the force on it.
   Percept perceive(sync::HostTime now);
+  // Once a tick, after perceive(): the force that the participant perceives while the device exerts force_N on the hand, N. The
+  // stage `percept` of a profile changes it; the arm moves under force_N itself.
+  Eigen::Vector3d felt_N(sync::HostTime now, const Eigen::Vector3d& force_N);
 
  private:
   // True when a node renders that modality, or did so a moment ago.
@@ -34,7 +39,9 @@ class Perception {
   void update_hearing(sync::HostTime now, Percept& percept);
 
   Rules rules_;
-  sync::ModalityEndpoint eyes_, ears_;
+  sync::ModalityEndpoint eyes_, ears_, hand_;
+  sync::ModalityEndpoint::Stage& percept_;
+  sync::StageSignal touch_;
   sync::Queue<node_health_t>& healths_;
   sync::ModalityEndpoint::Stream<world_state_t>& world_;
   sync::ModalityEndpoint::Events& events_;

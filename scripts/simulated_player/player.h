@@ -26,7 +26,7 @@ namespace tactus::simulated_player {
 struct Percept {
   double time_s = 0;
   Eigen::Vector3d hand_m{0, 0, 0};   // of its own arm, independent of the system
-  Eigen::Vector3d force_N{0, 0, 0};  // on the hand, as the device exerts it
+  Eigen::Vector3d force_N{0, 0, 0};  // on the hand, as perceived; the arm moves under the force of the device
   std::vector<std::optional<Eigen::Vector3d>>
       balls_m{};             // one for each goal: its place in the picture; nullopt: not visible
   std::vector<bool> fell{};  // one for each goal: its fall into the hole was heard since the last percept

@@ -3,8 +3,9 @@
 //
 //   in   WORLD_STATE, CONTACT_EVENTS   as visual_node and audio_node present them, with the degradations of the profile
 //        DEVICE_FORCE                  the force on the hand
-//        PLAYOUT, DEGRADATION          the delays and degradations of these modalities
+//        PLAYOUT, DEGRADATION          the delays and degradations of these modalities; the stage `percept` of touch acts here
 //   out  DEVICE_STATE                  the pose of the hand, a thousand times a second
+//        DEGRADED                      the decisions of the stage `percept`
 //
 // When an input is lost, it continues without it. Run it together with haptic_node --device external:player.
 #include "scripts/simulated_player/run.h"
@@ -95,7 +96,8 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
       node.set_state(node_health_t::RUNNING);
     }
     Percept percept = perception.perceive(now);
-    percept.force_N = force_of(force, force_arrival, now);
+    const Eigen::Vector3d force_N = force_of(force, force_arrival, now);
+    percept.force_N = perception.felt_N(now, force_N);
     percept.hand_m = arm.position_m();
     // After a late tick the hand moves no further than after one in time.
     const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(last_tick, now)));
@@ -103,7 +105,7 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
       setup->step(now, replies);
       percept.balls_m.assign(rules.goals.size(), std::nullopt);  // sight is off before the game begins
     } else if (scenes.scene()) {
-      arm.step(player.step(percept), percept.force_N, dt_s);
+      arm.step(player.step(percept), force_N, dt_s);
     }
     state.header.sim_time_ns = -1;
     state.pose.position_m = {arm.position_m().x(), arm.position_m().y(), arm.position_m().z()};

@@ -94,7 +94,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   add("participant",
       words(words({"simulated_player", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
       [&](int argc, char** argv) { return simulated_player::run(argc, argv, &loaded.rules); });
-  add("sim_node", words({"sim_node", loaded.scene, "--await", "participant"}, common),
+  add("sim_node", words({"sim_node", loaded.scene, "--await", "participant"}, degraded),
       [&](int argc, char** argv) { return sim::run(argc, argv, &loaded.world); });
   const sync::HostTime latest = time.now() + kWorldStartTimeout;
   while (!referee.begun() && time.now() < latest) time.run_for(kRunStep);

@@ -69,6 +69,8 @@ class DegradedSnapshots {
  public:
   // For a servo loop, which renders the newest message: its presentation delay holds back messages, by an earlier `now` of pop.
   void present_on_release() { presents_on_release_ = true; }
+  // Delivered messages keep their own publication time, clock and arrival: for a receiver that sums over them.
+  void keep_stamps() { keeps_stamps_ = true; }
   // decisions: list to which decisions are appended; null: none.
   void push(Message m, HostTime arrival, OperatorChain& operators, Decisions* decisions) {
     record_newest(m, arrival);
@@ -97,7 +99,7 @@ class DegradedSnapshots {
   std::optional<std::pair<Message, HostTime>> pop(HostTime now) {
     while (auto next = waiting_.pop(now)) {
       if (is_overtaken(*next)) continue;
-      update_header(next->message, next->arrival);
+      if (!keeps_stamps_) update_header(next->message, next->arrival);
       return std::make_pair(std::move(next->message), next->arrival);
     }
     return std::nullopt;
@@ -286,7 +288,7 @@ class DegradedSnapshots {
   RecentMap<std::uint64_t, Decided> decided_{kRemembered};
   Decisions overtaken_;
   std::uint64_t order_ = 0;
-  bool presents_on_release_ = false;
+  bool presents_on_release_ = false, keeps_stamps_ = false;
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};

@@ -50,6 +50,14 @@ WithoutEffect without_effect(const Cells& row) {
   return {row[kName], quantity, row[kMeaning]};
 }
 
+StageDef stage_of(const Cells& row) {
+  return {row[kName],
+          word<StageKind>(row, {{"input", StageKind::kInput},
+                                {"messages", StageKind::kMessages},
+                                {"signal", StageKind::kSignal}}),
+          number(row, kMax), row[kMeaning]};
+}
+
 using Ranked = std::pair<double, KnownModality>;
 
 void add(std::vector<Ranked>& found, const Cells& row) {
@@ -60,6 +68,8 @@ void add(std::vector<Ranked>& found, const Cells& row) {
         {row[kName], row[kUnit], number(row, kMin), number(row, kMax), row[kMeaning], combine(row)});
   } else if (row[kWhat] == "without" && !found.empty()) {
     found.back().second.without_effect.push_back(without_effect(row));
+  } else if (row[kWhat] == "stage" && !found.empty()) {
+    found.back().second.stages.push_back(stage_of(row));
   } else if (row[kWhat] == "pair" && !found.empty() && !found.back().second.operators.empty()) {
     found.back().second.operators.back().pairs.push_back(pair_of(row));
   } else {
@@ -110,6 +120,20 @@ std::string modalities_with(const std::string& output_operator) {
   for (const KnownModality& m : known_modalities())
     for (const OutputOperator& o : m.operators)
       if (o.name == output_operator) names += (names.empty() ? "" : ", ") + m.name;
+  return names;
+}
+
+const KnownModality* modality_with_stage(const std::string& stage) {
+  for (const KnownModality& m : known_modalities())
+    for (const StageDef& s : m.stages)
+      if (s.name == stage) return &m;
+  return nullptr;
+}
+
+std::string modalities_with_stages() {
+  std::string names;
+  for (const KnownModality& m : known_modalities())
+    if (!m.stages.empty()) names += (names.empty() ? "" : ", ") + m.name;
   return names;
 }
 

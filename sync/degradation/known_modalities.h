@@ -26,11 +26,27 @@ struct WithoutEffect {
   std::string reason;  // a clause: "touch receives surfaces and no forces; use force_step"
 };
 
+// The object of the operators of a stage.
+enum class StageKind : std::uint8_t {
+  kInput,     // the streams from the bus, the stage of a rule that names none
+  kMessages,  // whole messages of this modality, whose values stay
+  kSignal     // a signal, sample by sample
+};
+
+// A place in the loop of a modality at which a rule of a profile may act.
+struct StageDef {
+  std::string name;
+  StageKind kind = StageKind::kInput;
+  double max_delay_s = 0;  // largest delay of a rule; 0: as of any stream
+  std::string meaning;
+};
+
 struct KnownModality {
   std::string name;
   PlayoutKind kind = PlayoutKind::kAligned;
   std::vector<OutputOperator> operators = {};
   std::vector<WithoutEffect> without_effect = {};
+  std::vector<StageDef> stages = {};  // empty: rules act on the input only
 };
 
 // Sorted by the "min" cell of their rows, which is their place in the serial order.
@@ -46,6 +62,11 @@ std::vector<OutputOperator> output_operators_of(const std::string& modality);
 std::string modalities_with(const std::string& output_operator);
 // First output operator of this name in the tables; null: none.
 const OutputOperator* find_output_operator(const std::string& name);
+
+// First modality that declares a stage of this name; null: none.
+const KnownModality* modality_with_stage(const std::string& stage);
+// Names of the modalities that declare stages, separated by ", "; empty: none.
+std::string modalities_with_stages();
 
 // Parses concatenated modality.csv tables. Throws std::invalid_argument with one sentence.
 std::vector<KnownModality> parse_modalities(const std::string& csv);

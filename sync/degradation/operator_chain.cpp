@@ -34,10 +34,11 @@ Jitter jitter_of(const Rule& rule) {
 
 }  // namespace
 
-OperatorChain::OperatorChain(const Profile& profile, const std::string& modality, SimTime start) : start_(start) {
+OperatorChain::OperatorChain(const Profile& profile, const std::string& modality, SimTime start, const std::string& stage)
+    : start_(start) {
   for (std::size_t i = 0; i < profile.rules.size(); ++i) {
     const Rule& rule = profile.rules[i];
-    if (rule.modality != modality) continue;
+    if (rule.modality != modality || rule.stage != stage) continue;
     // Two modalities, or two rules of one, draw different numbers for the same event.
     Active a{rule, mixed(mixed(profile.seed, fnv1a_32(modality)), i), {}, {}};
     changes_values_ |= rule.quantise || rule.gain || rule.bias || rule.lowpass;
@@ -190,6 +191,57 @@ OutputValues OperatorChain::output(SimTime now) const {
   return sum;
 }
 
+Nanoseconds OperatorChain::constant_delay(SimTime now) const {
+  Nanoseconds sum{0};
+  for (const Active& a : rules_)
+    if (a.rule.delay && active_at(a.rule, now) && !a.rule.filtered()) sum += from_seconds(a.rule.delay->delay_s);
+  return sum;
+}
+
+Nanoseconds OperatorChain::usual_delay(SimTime now) const {
+  Nanoseconds sum = constant_delay(now);
+  for (const Active& a : rules_) {
+    if (!active_at(a.rule, now) || a.rule.filtered()) continue;
+    if (a.rule.jitter) sum += from_seconds(std::max(needed_delay_s(*a.rule.jitter), a.rule.jitter->scale_s));
+    if (a.rule.rate) sum += from_seconds(1 / a.rule.rate->rate_Hz);
+  }
+  return sum;
+}
+
+bool OperatorChain::cuts_off(SimTime now) const {
+  return std::any_of(rules_.begin(), rules_.end(),
+                     [&](const Active& a) { return (a.rule.off || a.rule.freeze) && active_at(a.rule, now); });
+}
+
+double OperatorChain::filtered(Active& a, std::int64_t id, int component, double value, double cutoff_Hz, SimTime now) {
+  if (a.lowpass.size() > kRememberedValues) a.lowpass.clear();
+  const auto [it, is_new] = a.lowpass.try_emplace({id, component}, Filtered{value, now});
+  if (it->second.time - now > kMaxStepBack) it->second = {value, now};
+  if (!is_new && now > it->second.time) {
+    it->second.value = lowpassed(it->second.value, value, cutoff_Hz, to_seconds(now - it->second.time));
+    it->second.time = now;
+  }
+  return it->second.value;
+}
+
+void OperatorChain::degrade_force(ForceSample& sample, SimTime t) {
+  for (Active& a : rules_) {
+    const Rule& r = a.rule;
+    if (!active_at(r, t)) continue;
+    if (const double size = sample.force_N.norm(); r.quantise && size > 0) {
+      const double factor = quantised(*r.quantise, size) / size;
+      sample.force_N *= factor;
+      sample.transient_N *= factor;
+    }
+    if (r.gain)
+      for (Eigen::Vector3d* part : {&sample.force_N, &sample.torque_N_m, &sample.transient_N}) *part *= r.gain->value;
+    if (!r.lowpass) continue;
+    int component = 0;
+    for (Eigen::Vector3d* part : {&sample.force_N, &sample.torque_N_m, &sample.transient_N})
+      for (double& x : *part) x = filtered(a, 0, component++, x, r.lowpass->value, t);
+  }
+}
+
 double OperatorChain::degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                       std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b,
                       SimTime paced) {
@@ -201,16 +253,7 @@ double OperatorChain::degraded_value(Quantity quantity, std::int64_t id, int com
     const bool scales_force = r.gain && r.gain->quantity == Quantity::kForce;
     if (r.gain && (r.gain->quantity == quantity || (scales_force && quantity == Quantity::kStiffness))) value *= r.gain->value;
     if (r.bias && r.bias->quantity == quantity) value += r.bias->value;
-    if (r.lowpass && r.lowpass->quantity == quantity) {
-      if (a.lowpass.size() > kRememberedValues) a.lowpass.clear();
-      const auto [it, is_new] = a.lowpass.try_emplace({id, component}, Filtered{value, now});
-      if (it->second.time - now > kMaxStepBack) it->second = {value, now};
-      if (!is_new && now > it->second.time) {
-        it->second.value = lowpassed(it->second.value, value, r.lowpass->value, to_seconds(now - it->second.time));
-        it->second.time = now;
-      }
-      value = it->second.value;
-    }
+    if (r.lowpass && r.lowpass->quantity == quantity) value = filtered(a, id, component, value, r.lowpass->value, now);
   }
   return value;
 }

@@ -59,11 +59,20 @@ struct SceneNames {
   std::vector<std::string> bodies, materials;
 };
 
+// A force as the signal of a stage.
+struct ForceSample {
+  Eigen::Vector3d force_N = Eigen::Vector3d::Zero(), torque_N_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d transient_N = Eigen::Vector3d::Zero();  // part of force_N that is due to hits
+  double share = 1;  // factor that its sender has already applied, above 0; not changed by operators
+  friend bool operator==(const ForceSample&, const ForceSample&) = default;
+};
+
 class OperatorChain {
  public:
   OperatorChain() = default;
   // start: when the profile came into force; its from and until count from that time.
-  OperatorChain(const Profile& profile, const std::string& modality, SimTime start);
+  // stage: place in the loop of the modality; empty: its input.
+  OperatorChain(const Profile& profile, const std::string& modality, SimTime start, const std::string& stage = "");
 
   bool empty() const { return rules_.empty(); }
   void set_scene(SceneNames names) { names_ = std::move(names); }
@@ -75,11 +84,19 @@ class OperatorChain {
   // Extra presentation delay of the whole modality, from delay and skew.
   Nanoseconds presentation_delay(SimTime now) const;
   OutputValues output(SimTime now) const;
+  // Sum of the constant delays of all unfiltered rules in force, of the network and of the presentation.
+  Nanoseconds constant_delay(SimTime now) const;
+  // Longest time for which an item is usually held back: constant delays, the spread of a jitter, and the period of a rate.
+  Nanoseconds usual_delay(SimTime now) const;
+  // True while a rule lets nothing through.
+  bool cuts_off(SimTime now) const;
 
   // A value after quantise, gain, bias and low-pass. id: of the contact, body or plane; component: of its vectors; paced: as
   // in StreamItem, for the low-pass.
   double degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,
                  std::int32_t material_a, std::int32_t material_b, std::int32_t body_a, std::int32_t body_b, SimTime paced = {});
+  // A force with its parts after quantise (of its magnitude), gain and low-pass; the torque only after gain and low-pass.
+  void degrade_force(ForceSample& sample, SimTime t);
   bool changes_values() const { return changes_values_; }
   // True when a rule compares the content of a snapshot, so that all of its pages are needed for a decision.
   bool compares() const { return compares_; }
@@ -110,6 +127,7 @@ class OperatorChain {
     std::map<std::pair<std::int64_t, int>, Filtered> lowpass;
   };
 
+  double filtered(Active& a, std::int64_t id, int component, double value, double cutoff_Hz, SimTime now);
   double elapsed_s(SimTime t) const;
   bool active_at(const Rule& rule, SimTime t) const;
   static Chain& chain_of(Active& a, const StreamItem& item);

@@ -2,6 +2,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <sstream>
@@ -90,6 +91,63 @@ void check_quantities(const Rule& rule) {
   check("deadband", rule.deadband);
 }
 
+// Attributes of a rule at a stage of each kind, beside modality, stage, from and until.
+constexpr std::array kOfMessages{"delay", "jitter", "rate", "loss", "off"};
+constexpr std::array kOfSignal{"delay", "jitter", "rate", "loss",    "off",   "freeze",
+                               "conceal", "gain", "lowpass", "quantise", "deadband"};
+
+template <std::size_t kCount>
+void check_attribute(const std::array<const char*, kCount>& valid, const StageDef& stage, const std::string& name) {
+  if (name == "modality" || name == "stage" || name == "from" || name == "until") return;
+  if (std::find(valid.begin(), valid.end(), name) != valid.end()) return;
+  std::string choices;
+  for (const char* other : valid) choices += (choices.empty() ? "" : ", ") + std::string(other);
+  throw std::invalid_argument("the stage " + stage.name + " has no " + name + "; choose from " + choices);
+}
+
+// A signal of a stage is a force, and its newest sample counts.
+void check_signal(const Rule& rule, const StageDef& stage) {
+  const auto check = [&](const char* name, const auto& given) {
+    if (given && given->quantity != Quantity::kForce)
+      throw std::invalid_argument(std::string(name) + ": the signal of the stage " + stage.name + " is a force; write " + name +
+                                  "=\"... force\"");
+  };
+  check("quantise", rule.quantise);
+  check("gain", rule.gain);
+  check("lowpass", rule.lowpass);
+  check("deadband", rule.deadband);
+  if (rule.jitter && !rule.jitter->keep_order)
+    throw std::invalid_argument("order=free: the newest sample of a signal counts; remove it");
+}
+
+// Checks stage= of a rule, and the attributes that the stage permits. The stage of the input is stored as no stage.
+void check_stage(Rule& rule, const Element& e) {
+  if (!e.Attribute("stage")) return;
+  const KnownModality* known = known_modality(rule.modality);
+  if (!known || known->stages.empty())
+    throw std::invalid_argument(rule.modality + " has no stages; remove stage=, or name a modality that has them: " +
+                                modalities_with_stages());
+  std::string names;
+  const StageDef* stage = nullptr;
+  for (const StageDef& s : known->stages) {
+    names += (names.empty() ? "" : ", ") + s.name;
+    if (s.name == rule.stage) stage = &s;
+  }
+  if (!stage) throw std::invalid_argument(rule.modality + " has no stage \"" + rule.stage + "\"; choose from " + names);
+  if (stage->kind == StageKind::kInput) {
+    rule.stage.clear();
+    return;
+  }
+  for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next())
+    stage->kind == StageKind::kMessages ? check_attribute(kOfMessages, *stage, a->Name())
+                                        : check_attribute(kOfSignal, *stage, a->Name());
+  if (stage->kind == StageKind::kSignal) check_signal(rule, *stage);
+  const double delay_s = (rule.delay ? rule.delay->delay_s : 0) + (rule.jitter ? needed_delay_s(*rule.jitter) : 0);
+  if (stage->max_delay_s > 0 && delay_s > stage->max_delay_s)
+    throw std::invalid_argument("delay and jitter of the stage " + stage->name + " add up to more than " +
+                                milliseconds(stage->max_delay_s, 6) + "; make them shorter");
+}
+
 Rule parse_rule(const Element& e, const DeclaredOutput& own) {
   Rule rule;
   rule.line = e.GetLineNum();
@@ -99,6 +157,8 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
     const std::string name = a->Name(), value = a->Value();
     if (name == "modality") {
       rule.modality = value;
+    } else if (name == "stage") {
+      rule.stage = value;
     } else if (name == "material") {
       rule.material = value;
       if (value.empty()) throw std::invalid_argument("material=\"\" names no material; remove it, or name one");
@@ -117,9 +177,10 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
   if (operators == 0)
     throw std::invalid_argument("this <degrade> does nothing; give it an operator, for example delay=\"40ms\"");
   if (rule.until_s && *rule.until_s <= rule.from_s) throw std::invalid_argument("until must be after from");
+  check_stage(rule, e);
   for (const Attribute& a : of_output) read_output(rule, a, own);
   check_jitter(rule);
-  check_quantities(rule);
+  if (rule.stage.empty()) check_quantities(rule);
   return rule;
 }
 

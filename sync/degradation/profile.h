@@ -52,6 +52,8 @@ struct ReorderDef {
 // One <degrade>: the operators act in the order of the members.
 struct Rule {
   std::string modality;
+  // Place in the loop of the modality at which the rule acts, as it declares them (known_modalities.h); empty: its input.
+  std::string stage;
   int line = 0;
   // Begin and end of the rule, s of simulated time since the profile came into force.
   double from_s = 0;

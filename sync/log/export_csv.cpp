@@ -40,13 +40,13 @@ std::string haptic_csv_names() {
   return "time_s,host_s,tool,device_x_m,device_y_m,device_z_m,proxy_x_m,proxy_y_m,proxy_z_m,force_x_N,force_y_N,"
          "force_z_N,torque_x_N_m,torque_y_N_m,torque_z_N_m,transient_x_N,transient_y_N,transient_z_N,fade,"
          "coupling,"
-         "touch_status,constraints,energy_J,generated_J,seq,run\n";
+         "touch_status,constraints,energy_J,generated_J,injected_J,seq,run\n";
 }
 
 std::string csv_row(const tool_state_t& m, int run) {
   return row(m.header, m.tool, m.device.position_m, m.proxy.position_m, m.force_N, m.torque_N_m, m.transient_N, m.fade,
              m.coupling, to_string(static_cast<SampleStatus>(m.touch_status)), m.constraint_count, m.energy_J,
-             m.generated_J, std::to_string(m.header.seq), std::to_string(run));
+             m.generated_J, m.injected_J, std::to_string(m.header.seq), std::to_string(run));
 }
 
 std::string thermal_csv_names() {

@@ -35,7 +35,7 @@ struct AddedField {
   std::string_view type, name;
 };
 // Fields that did not exist in 0.1.0 and for which 0 means that the value is not known.
-constexpr std::array<AddedField, 1> kAddedFields{{{"tool_constraint_t", "impulse_since_ns"}}};
+constexpr std::array<AddedField, 2> kAddedFields{{{"tool_constraint_t", "impulse_since_ns"}, {"tool_state_t", "injected_J"}}};
 
 std::string_view new_name(std::string_view type, std::string_view name) {
   for (const RenamedField& r : kRenamedFields)

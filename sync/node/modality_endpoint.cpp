@@ -71,11 +71,15 @@ void ModalityEndpoint::set_scene(const scene_t& scene, int tool) {
   for (const material_def_t& m : scene.materials) names_.materials.push_back(m.name);
   operators_.set_scene(names_);
   tool_ = tool;
+  set_scene_profile(scene.profile);
+}
+
+void ModalityEndpoint::set_scene_profile(const std::string& profile) {
   // A profile from the command line, or one received since then, takes precedence.
   if (!node_.options().profile.text.empty() || receiver_.generation() > 0) return;
   // A scene without a profile removes the profile of the previous scene.
-  if (scene.profile.empty() && profile_hash_ == 0) return;
-  const std::string text = scene.profile.empty() ? "<profile/>" : scene.profile;
+  if (profile.empty() && profile_hash_ == 0) return;
+  const std::string text = profile.empty() ? "<profile/>" : profile;
   const std::int64_t hash = fnv1a_64(text.data(), text.size());
   if (hash == profile_hash_) return;
   try {
@@ -97,6 +101,9 @@ void ModalityEndpoint::apply_profile(const ProfileInForce& profile) {
   report_effect();
   effect_ = {};
   if (!observes_) node_.set_profile_effect("");
+  parsed_ = shared;
+  profile_start_ = profile.start;
+  for (Stage& stage : stages_) stage = {stage.name, OperatorChain(*shared, d.modality, profile.start, stage.name)};
   const Profile& parsed = *shared;
   operators_ = OperatorChain(parsed, d.modality, profile.start);
   operators_.set_scene(names_);
@@ -104,12 +111,25 @@ void ModalityEndpoint::apply_profile(const ProfileInForce& profile) {
   profile_hash_ = profile.hash;
   profile_name_ = parsed.name;
   node_.set_profile(profile.hash);
-  if (profile.generation > 0 || !parsed.rules.empty())
-    std::cerr << d.name << ": profile \"" << parsed.name << "\", " << (operators_.empty() ? "nothing" : "degrades this sense")
-              << std::endl;
-  for (const std::string& name : undeclared_operators(parsed, d))
-    std::cerr << d.name << ": profile \"" << parsed.name << "\": this sense has no " << name << "; it is left out"
-              << std::endl;
+  announce_pending_ = profile.generation > 0 || !parsed.rules.empty();
+}
+
+void ModalityEndpoint::announce_profile() const {
+  std::string stages;
+  for (const Stage& stage : stages_)
+    if (!stage.operators.empty()) stages += (stages.empty() ? "the stage " : ", ") + stage.name;
+  const std::string begin = descriptor_.name + ": profile \"" + profile_name_ + "\"";
+  if (observes_ && !stages_.empty()) {
+    if (!stages.empty()) std::cerr << begin << ", degrades " << stages << std::endl;
+    return;
+  }
+  const std::string effect = !operators_.empty() ? "degrades this sense" + (stages.empty() ? "" : " and " + stages)
+                             : stages.empty()    ? "nothing"
+                                                 : "degrades " + stages;
+  std::cerr << begin << ", " << effect << std::endl;
+  if (observes_) return;
+  for (const std::string& name : undeclared_operators(*parsed_, descriptor_))
+    std::cerr << begin << ": this sense has no " << name << "; it is left out" << std::endl;
 }
 
 void ModalityEndpoint::read_control_messages(HostTime) {
@@ -126,8 +146,10 @@ void ModalityEndpoint::read_control_messages(HostTime) {
 
 void ModalityEndpoint::step(HostTime now) {
   read_control_messages(now);
+  if (std::exchange(announce_pending_, false)) announce_profile();
   const auto map = simulation_.map(now);
   const SimTime sim_now = map ? map->to_sim(now) : SimTime{};
+  sim_now_ = sim_now;
   const Nanoseconds delay_before = std::exchange(profile_delay_, operators_.presentation_delay(sim_now));
   if (profile_delay_ > delay_before) log_in_flight_delays(now, sim_now);
   output_ = operators_.output(sim_now);
@@ -136,6 +158,14 @@ void ModalityEndpoint::step(HostTime now) {
   delay_ = lockstep_ ? now - lockstep_->begin_of_iteration(now - serial_delay_) : serial_delay_;
   const HostTime state_time = lockstep_ ? lockstep_->begin_of_iteration(now) : now;
   for (const auto& stream : streams_) stream->step(*this, now, state_time);
+}
+
+ModalityEndpoint::Stage& ModalityEndpoint::stage(const std::string& name) {
+  for (Stage& known : stages_)
+    if (known.name == name) return known;
+  Stage& stage = stages_.emplace_back(Stage{name});
+  if (parsed_) stage.operators = OperatorChain(*parsed_, descriptor_.modality, profile_start_, name);
+  return stage;
 }
 
 ModalityEndpoint::Events& ModalityEndpoint::events(std::size_t capacity) {
@@ -222,44 +252,55 @@ void ModalityEndpoint::report(const presentation_t& report) {
 }
 
 void ModalityEndpoint::publish(HostTime now) {
-  if (observes_) return decisions_.clear();
-  reporter_.publish(node_.bus(), now);
-  if (decisions_.size() < kDecisionsPerMessage && now < next_decisions_) return;
+  if (observes_)
+    decisions_.clear();
+  else
+    reporter_.publish(node_.bus(), now);
+  const bool full = decisions_.size() >= kDecisionsPerMessage ||
+                    std::ranges::any_of(stages_, [](const Stage& s) { return s.decisions.size() >= kDecisionsPerMessage; });
+  if (!full && now < next_decisions_) return;
   next_decisions_ = now + kDecisionPeriod;
-  publish_decisions();
+  for (Stage& stage : stages_)
+    publish_decisions(descriptor_.modality + ":" + stage.name, stage.decisions, stage.effect, Nanoseconds(0));
+  if (observes_) return;
+  publish_decisions(descriptor_.modality, decisions_, effect_, profile_delay_);
+  effect_.set_wire(operators_.wire_messages(), operators_.wire_lost());
+  node_.set_profile_effect(effect_.text());
 }
 
-void ModalityEndpoint::publish_decisions() {
-  if (decisions_.size() > kMaxDecisions) decisions_.erase(decisions_.begin(), decisions_.end() - kMaxDecisions);
+void ModalityEndpoint::publish_decisions(const std::string& name, Decisions& decisions, MeasuredEffect& effect, Nanoseconds delay) {
+  if (decisions.size() > kMaxDecisions) decisions.erase(decisions.begin(), decisions.end() - kMaxDecisions);
   degraded_t m{};
   m.header.sim_time_ns = -1;
-  m.modality = descriptor_.modality;
+  m.modality = name;
   m.profile = profile_hash_;
-  for (std::size_t i = 0; i < decisions_.size(); ++i) {
-    const DecisionRecord& d = decisions_[i];
-    effect_.add(d, profile_delay_);
+  for (std::size_t i = 0; i < decisions.size(); ++i) {
+    const DecisionRecord& d = decisions[i];
+    effect.add(d, delay);
     decision_t out{};
     out.key = static_cast<std::int64_t>(d.key);
     out.is_event = d.is_event ? 1 : 0;
     out.time_ns = to_ns(d.time);
     out.drop_reason = static_cast<std::int8_t>(d.decision.why);
-    const Nanoseconds held = d.decision.release - d.arrival + d.decision.shift + profile_delay_;
+    const Nanoseconds held = d.decision.release - d.arrival + d.decision.shift + delay;
     out.held_ns = d.decision.dropped() ? 0 : std::max<std::int64_t>(0, held.count());
     out.twice = d.decision.duplicated ? 1 : 0;
     m.decisions.push_back(out);
-    if (m.decisions.size() < kDecisionsPerMessage && i + 1 < decisions_.size()) continue;
+    if (m.decisions.size() < kDecisionsPerMessage && i + 1 < decisions.size()) continue;
     m.count = static_cast<std::int32_t>(m.decisions.size());
     node_.bus().publish(channels::kDegraded, m);
     m.decisions.clear();
   }
-  decisions_.clear();
-  effect_.set_wire(operators_.wire_messages(), operators_.wire_lost());
-  node_.set_profile_effect(effect_.text());
+  decisions.clear();
 }
 
 void ModalityEndpoint::report_effect() {
-  if (const std::string text = observes_ ? "" : effect_.text(); !text.empty())
-    std::cerr << descriptor_.name << ": measured effect of the profile \"" << profile_name_ << "\": " << text << std::endl;
+  const auto print = [&](const std::string& text, const std::string& stage) {
+    if (!text.empty())
+      std::cerr << descriptor_.name << ": measured effect of the profile \"" << profile_name_ << "\"" << stage << ": " << text << std::endl;
+  };
+  if (!observes_) print(effect_.text(), "");
+  for (const Stage& stage : stages_) print(stage.effect.text(), " at the stage " + stage.name);
 }
 
 }  // namespace tactus::sync

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -110,8 +111,20 @@ class ModalityEndpoint {
     return stream;
   }
 
+  // The operators of a further stage of this modality (sync/degradation/known_modalities.h), from the profile in force. The
+  // process in which the stage acts applies them, and adds their decisions. Create it before the first step.
+  struct Stage {
+    std::string name;
+    OperatorChain operators{};
+    Decisions decisions{};  // published as of the modality "NAME:STAGE"
+    MeasuredEffect effect{};
+  };
+  Stage& stage(const std::string& name);
+
   // A scene is complete: its names, its tool and its profile. tool: index in scene_t.tools; -1: none.
   void set_scene(const scene_t& scene, int tool = -1);
+  // The same for a process without scene: its profile, XML; empty: none.
+  void set_scene_profile(const std::string& profile);
   // The presentation delay of this modality while no PLAYOUT message sets one; and its maximum latency from the arrival of an
   // event to its output.
   void set_own_delay(Nanoseconds delay) { playout_.set_own(delay); }
@@ -123,6 +136,8 @@ class ModalityEndpoint {
   // Presentation delay by policy and by profile: the output at now shows the world at now - delay(). In lock-step it grows
   // until the next iteration of the loop.
   Nanoseconds delay() const { return delay_; }
+  // Simulated time as of the last step; 0: not known yet.
+  SimTime sim_now() const { return sim_now_; }
   // The part of delay() that the profile adds.
   Nanoseconds profile_delay() const { return profile_delay_; }
   // The time at which to present an event that happened at `happened`: delay() later, or as soon as this modality can under
@@ -184,11 +199,13 @@ class ModalityEndpoint {
   void log_in_flight_delays(HostTime now, SimTime sim_now);
   void read_control_messages(HostTime now);
   void apply_profile(const ProfileInForce& profile);
+  // Prints the profile in force, and its effect here.
+  void announce_profile() const;
   // The first arrival of an event from the bus; nullopt: it has not arrived, or has been forgotten.
   std::optional<HostTime> arrival_of(std::int64_t event_id) const;
   void report_dropped(const std::vector<contact_event_t>& dropped);
   bool expects(const contact_event_t& event) const;
-  void publish_decisions();
+  void publish_decisions(const std::string& name, Decisions& decisions, MeasuredEffect& effect, Nanoseconds delay);
   // Prints the effect of the profile in force.
   void report_effect();
 
@@ -203,6 +220,11 @@ class ModalityEndpoint {
   OperatorChain operators_;
   SceneNames names_;
   int tool_ = -1;
+  std::list<Stage> stages_;
+  SimTime profile_start_{};
+  std::shared_ptr<const Profile> parsed_;
+  bool announce_pending_ = false;
+  SimTime sim_now_{};
   Decisions decisions_;
   MeasuredEffect effect_;
   HostTime next_decisions_{};

@@ -92,7 +92,7 @@ void NodeOptions::add_to(Arguments& app, const NodeDescriptor& d) {
   app.add_option("--seed", seed, "seed of all random numbers").show_default();
   app.add_option("--set", set, "name=value of a setting, see docs/settings.md; may be repeated");
   if (!d.modality.empty() || d.name == "sync_node")
-    app.add_option("--degrade", degrade, "degradation profile (XML): the intended degradations of each sense");
+    app.add_option("--degrade", degrade, "degradation profile (XML): the intended degradations of each sense, and of each stage of touch");
   // For measurements only, hence not in --help: a renderer that uses up its core.
   app.add_option("--emulate-load", load).environment("TACTUS_LOAD_" + d.name).range(0.0, 100.0).hidden();
   app.add_flag("--check", check, "checks options and files, then exits without joining the bus");

@@ -150,7 +150,7 @@ class Samples {
     m.tool = whole(0, 3);
     fill(m.device), fill(m.proxy), fill(m.device_velocity_m_s), fill(m.proxy_velocity_m_s);
     fill(m.device_spin_rad_s), fill(m.proxy_spin_rad_s), fill(m.force_N), fill(m.torque_N_m), fill(m.transient_N);
-    m.energy_J = single(-9, 9), m.generated_J = single(-9, 9), m.coupling = single(0, 1), m.touch_status = static_cast<std::int8_t>(whole(0, 5)), m.fade = single(0, 1);
+    m.energy_J = single(-9, 9), m.generated_J = single(-9, 9), m.injected_J = single(0, 9), m.coupling = single(0, 1), m.touch_status = static_cast<std::int8_t>(whole(0, 5)), m.fade = single(0, 1);
     m.buttons = whole(0, 9);
     fill_list(m.constraint_count, m.constraints, 0, 8);
   }

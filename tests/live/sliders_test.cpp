@@ -108,3 +108,29 @@ TEST_CASE("All slider positions give a valid profile, which sets the sliders to 
     REQUIRE(with_sliders(text, at) == text);  // unchanged sliders leave the profile unchanged
   }
 }
+
+TEST_CASE("Each stage of touch has sliders of its own, which change the rules of that stage only") {
+  const std::string profile =
+      "<profile name=\"stages\"><degrade modality=\"haptic\" delay=\"20ms\"/><degrade modality=\"haptic\" stage=\"force\" "
+      "delay=\"36ms\" gain=\"0.5\"/><degrade modality=\"haptic\" stage=\"model\" loss=\"5%\"/></profile>";
+  const nlohmann::json shown = degradation_json(profile);
+  CHECK(shown["stages"] == nlohmann::json({"haptic:action", "haptic:force", "haptic:percept"}));
+  CHECK(shown["senses"]["haptic:force"]["delay_ms"].get<double>() == Approx(36));
+  CHECK(shown["senses"]["haptic:force"]["more"] == true);
+  CHECK(shown["senses"]["haptic"]["delay_ms"].get<double>() == Approx(20));
+  CHECK(shown["senses"]["haptic"]["loss"] == 0.05);
+  CHECK_FALSE(shown["senses"].contains("haptic:percept"));
+  auto at = sliders_of(profile);
+  at["haptic:force"].delay_ms = 72;
+  at["haptic:percept"] = {100, 0, 0};
+  at["haptic:action"] = {0, 0, 0.1};
+  const std::string changed = with_sliders(profile, at);
+  const nlohmann::json again = degradation_json(changed)["senses"];
+  CHECK(again["haptic"]["delay_ms"].get<double>() == Approx(20));
+  CHECK(again["haptic:force"]["delay_ms"].get<double>() == Approx(72));
+  CHECK(again["haptic:percept"]["delay_ms"].get<double>() == Approx(100));
+  CHECK(again["haptic:action"]["loss"] == 0.1);
+  at["haptic:percept"] = at["haptic:action"] = {};
+  const auto without = sync::parse_profile(with_sliders(changed, at), "without");
+  CHECK(without.rules.size() == 3);
+}

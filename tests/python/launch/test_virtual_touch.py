@@ -63,6 +63,44 @@ class VirtualTouch(unittest.TestCase):
             self.assertGreater(body, 0.005, setting)
             self.assertLess(abs(body + hand), 0.01 * body, setting)
 
+    def profile(self, rule):
+        path = self.folder / "stage.xml"
+        path.write_text(f'<profile name="stage"><degrade modality="haptic" {rule}/></profile>', encoding="utf-8")
+        return path
+
+    def degraded(self, scene, rule, seconds=4):
+        """haptic.csv of a scene under one rule for touch, and the velocity of its body."""
+        return self.run_scene(scene, "--degrade", str(self.profile(rule)), seconds=seconds), self.body_speed()
+
+    def test_percept_operators_and_neutral_operators_of_all_stages_change_nothing_to_the_bit(self):
+        self.run_scene(KICK)
+        clear = (self.out / "haptic.csv").read_bytes(), self.body_speed()
+        for rule in ('stage="percept" off="true"', 'stage="percept" delay="0.5s" gain="-3"', 'stage="force" delay="0"', 'stage="action" delay="0"',
+                     'stage="force" gain="1"'):
+            self.degraded(KICK, rule)
+            self.assertEqual(clear, ((self.out / "haptic.csv").read_bytes(), self.body_speed()), rule)
+
+    def test_a_push_without_felt_force_moves_the_body_and_a_late_hand_moves_it_later(self):
+        clear = self.run_scene(KICK), self.body_speed()
+        off = self.degraded(KICK, 'stage="force" off="true"')
+        self.assertGreater(off[1], 0.8 * clear[1])
+        self.assertEqual({0.0}, set(off[0]["force_x_N"]))
+        self.assertGreater(max(abs(f) for f in clear[0]["force_x_N"]), 0.1)
+        late = self.degraded(KICK, 'stage="action" delay="80ms"')
+        self.assertGreater(late[1], 0.005)
+        gone = self.degraded(KICK, 'stage="action" off="true"')
+        self.assertEqual(0, gone[1])
+
+    def test_the_energy_of_a_late_force_on_a_board_is_reported_and_bounded(self):
+        free = 10 / 2 - 2000 * 0.0005 / 0.8  # damping of the device that the coupling does not need, N s/m: haptic_node/safety/injected_energy.cpp
+        for delay_ms in (15, 36, 72, 150):
+            touch = self.run_scene(PRESS, "--degrade", str(self.profile(f'stage="force" delay="{delay_ms}ms"')))
+            z, time = touch["device_z_m"], touch["host_s"]
+            moved = sum((z[i + 1] - z[i]) ** 2 / (time[i + 1] - time[i]) for i in range(len(z) - 1))
+            self.assertLess(max(touch["injected_J"]), 0.0005 + free * moved, delay_ms)
+            self.assertLess(max(abs(f) for f in touch["force_z_N"]), 8.0001, delay_ms)
+            self.assertLess(max(touch["generated_J"]), 0.001, delay_ms)
+
     def test_a_board_is_as_stiff_with_a_late_touch_model_as_with_a_fresh_one(self):
         fresh = None
         for how in ("fresh", 'delay="10ms"', 'delay="50ms"', 'delay="100ms"', 'delay="200ms"', 'delay="200ms network"', 'rate="5Hz"', "latency"):

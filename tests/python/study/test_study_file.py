@@ -9,7 +9,7 @@ import xml.etree.ElementTree as xml
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
 sys.path.insert(0, str(SCRIPTS / "python"))
 from tactus.refusal import Refusal
-from tactus.study import quantities, study_file
+from tactus.study import quantities, stages, study_file
 
 GOOD = """<study name="s" version="1" scene="single_taps.sdf" task="tap" seed="3">
   <instructions>Listen and look.</instructions>
@@ -205,6 +205,44 @@ class StudyFile(unittest.TestCase):
         for name in names:
             with self.subTest(name):
                 self.assertEqual(study_file.read(name).name, name)
+
+    def staged(self, element):
+        """A study of games with this condition."""
+        return ('<study name="s" version="1" scene="dark_room_game.sdf" task="game" seed="3"><conditions><nothing/>\n' + element +
+                '</conditions><procedure kind="constant" repetitions="1"/><response kind="performance"/><stimulus by="participant" limit="30s"/></study>')
+
+    def test_a_stage_of_touch_is_in_the_profile_and_in_the_table(self):
+        cases = {'<factor modality="haptic" stage="percept" operator="delay" levels="40ms"/>': ("haptic:percept", "delay", '<degrade modality="haptic" stage="percept" delay="40ms"/>'),
+                 '<factor modality="haptic" stage="force" operator="quantise" levels="2N"/>': ("haptic:force", "quantise", '<degrade modality="haptic" stage="force" quantise="2N"/>'),
+                 '<factor modality="haptic" stage="force" operator="deadband" levels="20%"/>': ("haptic:force", "deadband", '<degrade modality="haptic" stage="force" deadband="20% force"/>'),
+                 '<factor modality="haptic" stage="force" operator="lowpass" levels="20Hz"/>': ("haptic:force", "lowpass", '<degrade modality="haptic" stage="force" lowpass="20Hz"/>'),
+                 '<factor modality="haptic" stage="model" operator="delay" levels="40ms"/>': ("haptic", "delay", '<degrade modality="haptic" delay="40ms"/>'),
+                 '<remove modality="haptic" stage="action"/>': ("haptic:action", "off", '<degrade modality="haptic" stage="action" off="true"/>'),
+                 '<remove modality="haptic" stage="force" how="freeze"/>': ("haptic:force", "freeze", '<degrade modality="haptic" stage="force" freeze="hold"/>')}
+        for element, (sense, operator, profile) in cases.items():
+            condition = self.read(self.staged(element)).conditions[-1]
+            level = condition.fixed
+            self.assertEqual([profile], condition.elements(level))
+            row = condition.row(level)
+            self.assertEqual((sense, operator), (row["modality_degraded"], row["operator"]))
+            self.assertIn(sense, condition.id)
+            self.assertEqual(sense == "haptic:percept", condition.acts_in_participant)
+
+    def test_a_stage_that_does_not_exist_or_an_operator_that_it_lacks_is_refused(self):
+        for element, word in (('<factor modality="audio" stage="force" operator="delay" levels="40ms"/>', "has no stages"),
+                              ('<factor modality="haptic" stage="feel" operator="delay" levels="40ms"/>', "there is no stage feel"),
+                              ('<factor modality="haptic" stage="action" operator="gain" levels="0.5"/>', "has no operator gain"),
+                              ('<factor modality="haptic" stage="force" operator="delay" levels="1001ms"/>', "at most 1000 ms"),
+                              ('<factor modality="haptic" stage="force" operator="jitter" levels="200ms"/>', "at most 1000 ms"),
+                              ('<remove modality="haptic" stage="action" how="freeze"/>', "has no operator freeze"),
+                              ('<remove modality="visual" stage="percept"/>', "has no stages")):
+            self.refused(self.staged(element), word)
+
+    def test_the_stages_of_studies_are_those_of_the_haptic_node(self):
+        with open(SCRIPTS.parent / "haptic_node" / "modality.csv", encoding="utf-8") as file:
+            rows = [line.split(",") for line in file if line.startswith("stage,")]
+        self.assertEqual({stages.MODEL, *stages.STAGES}, {row[1] for row in rows})
+        self.assertEqual(stages.LONGEST_MS, {row[1]: 1000 * float(row[5]) for row in rows if row[1] != stages.MODEL})
 
 
 if __name__ == "__main__":

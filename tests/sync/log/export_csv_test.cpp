@@ -45,6 +45,7 @@ TEST_CASE("A row of haptic.csv has a value in every column") {
   m.coupling = 0.75f;
   m.energy_J = -0.25f;
   m.generated_J = 0.001953125f;
+  m.injected_J = 0.00390625f;
   m.touch_status = static_cast<std::int8_t>(SampleStatus::kHeld);
   const std::string names = haptic_csv_names(), row = csv_row(m);
   CHECK(cells(names).size() == cells(row).size());
@@ -62,6 +63,7 @@ TEST_CASE("A row of haptic.csv has a value in every column") {
   CHECK(cell(names, row, "coupling") == "0.75");
   CHECK(cell(names, row, "energy_J") == "-0.25");
   CHECK(cell(names, row, "generated_J") == "0.001953125");
+  CHECK(cell(names, row, "injected_J") == "0.00390625");
   CHECK(cell(names, row, "touch_status") == "held");
 }
 

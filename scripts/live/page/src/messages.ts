@@ -13,8 +13,9 @@ export type Presentation = [time_s: number, modality: string, part: number, outc
 export type Value = [variable: number, time_s: number, value: number, source: number];
 export interface Common { now: number; health?: NodeHealth[]; report?: { senses: ModalityReport[]; pairs: Pair[] }; tags?: VariableInfo[] }
 export interface SliderValues { delay_ms: number; rate_Hz: number; loss: number }
-// The profile in force; more: it contains operators of a modality that no slider shows.
-export interface Degradation { name: string; senses: Record<string, SliderValues & { more: boolean }> }
+// The profile in force; more: it contains operators of a modality that no slider shows. stages: all stages of modalities, each a sense
+// "MODALITY:STAGE".
+export interface Degradation { name: string; senses: Record<string, SliderValues & { more: boolean }>; stages: string[] }
 // question: its name; kind "nothing": a trial is in progress. leader: the leading node; "": it publishes no health.
 export interface Study {
   question: string; kind: "nothing" | "read" | "choice" | "number"; text: string; choices: string[]; lowest: number; highest: number; step: number;
@@ -33,7 +34,7 @@ export interface Reply { t: "reply"; text: string; good: boolean }
 export type ServerMessage = Hello | Frame | Reply;
 
 export const modalityColour: Record<string, string> = { haptic: "#e69f00", audio: "#56b4e9", visual: "#cc79a7", thermal: "#d9622b", world: "#9aa4b2" };
-export const colourOf = (modality: string): string => modalityColour[modality] ?? "#009e73";
+export const colourOf = (modality: string): string => modalityColour[modality.split(":")[0]!] ?? "#009e73";
 export function element<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page lacks #${id}`);

@@ -41,6 +41,7 @@ export class Sliders {
     this.build();
   }
   inForce(d: Degradation): void {
+    this.modalities(d.stages.filter((s) => this.settings.has(s.split(":")[0]!)));
     element("inforce").textContent = d.name ? `in force: ${d.name}` : "";
     const text = JSON.stringify(d.senses);
     element("inforce").dataset.senses = text;

@@ -55,11 +55,16 @@ class Factor:
         """Whether the level has no effect."""
         return not self.removal and level == (1 if self.operator in FROM_ONE else math.nan if self.lower_is_worse else 0)
 
+    def sense(self):
+        """The sense as text, with its stage of touch: "touch (percept)"."""
+        modality, _, stage = self.modality.partition(":")
+        return NAME.get(modality, modality) + (f" ({stage})" if stage else "")
+
     def words(self):
-        return f"{NAME.get(self.modality, self.modality)}: {self.operator.replace('_', ' ')}"
+        return f"{self.sense()}: {self.operator.replace('_', ' ')}"
 
     def axis(self):
-        return f"{self.operator.replace('_', ' ')} of {NAME.get(self.modality, self.modality)}" + (f" ({self.unit})" if self.unit else "")
+        return f"{self.operator.replace('_', ' ')} of {self.sense()}" + (f" ({self.unit})" if self.unit else "")
 
     def severity_axis(self):
         return f"1 / {self.axis()}" + (" − 1" if self.operator in FROM_ONE else "") if self.lower_is_worse else self.axis()

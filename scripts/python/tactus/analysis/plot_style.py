@@ -12,7 +12,7 @@ BANDS = ("#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#9c755f", "#bab
 
 
 def colour(modality):
-    return figures.COLOUR.get(modality, INK)
+    return figures.COLOUR.get(modality.partition(":")[0], INK)
 
 
 def stamp(fig, observer):

@@ -56,7 +56,7 @@ def commands(plan, run_id, git):
         for name in {walls.FIRST, *plan.walls}:
             own[name] = [*own.get(name, []), "--set", f"shader_folder={plan.shaders}"]
     if plan.degrade:
-        for name in (*plan.senses(), *plan.players(), "sync_node"):
+        for name in (*plan.senses(), *plan.players(), "sync_node", "sim_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
     return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common(plan, run_id),
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}

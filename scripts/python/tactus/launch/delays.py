@@ -51,5 +51,7 @@ def profile_text_s(text):
         return 0.0  # the nodes report the error with its line
     by_modality = {}
     for rule in rules:
+        if rule.get("stage") in ("action", "percept"):
+            continue  # no node presents anything later
         by_modality[rule.get("modality")] = by_modality.get(rule.get("modality"), 0.0) + sum(seconds(rule.get(name, "")) for name in ("delay", "jitter"))
     return max(by_modality.values(), default=0.0)

@@ -1,16 +1,17 @@
 """Conditions of a study: a condition is one degradation at levels that a procedure chooses, or one fixed degradation."""
 import dataclasses
 
-from tactus.study import quantities
+from tactus.study import quantities, stages
 
 SENSES = ("haptic", "audio", "visual", "thermal")
 
 
 @dataclasses.dataclass(frozen=True)
 class Factor:
-    """One sense and the operator that degrades it, at a level in the operator's unit (quantities.OPERATORS)."""
+    """One sense and the operator that degrades it, at a level in the operator's unit (quantities.OPERATORS). stage: of touch; "": its input."""
     modality: str
     operator: str
+    stage: str = ""
 
     @property
     def unit(self):
@@ -18,10 +19,24 @@ class Factor:
 
     def degrade(self, level):
         """Element of a profile; "": this level has no effect."""
-        return "" if quantities.nothing(self.operator, level) else quantities.degrade(self.modality, self.operator, level)
+        return "" if quantities.nothing(self.operator, level) else quantities.degrade(self.modality, self.operator, level, self.stage)
 
     def words(self):
-        return f"{self.modality} {self.operator}"
+        return f"{stages.named(self.modality, self.stage)} {self.operator}"
+
+
+def factor(modality, operator, stage, levels):
+    """A Factor; stage: the attribute of the file, or None. Raises ValueError with one sentence when the modality does not have the operator at these levels."""
+    only = quantities.OUTPUT_OF.get(operator)
+    if only not in (None, modality):
+        raise ValueError(f"{modality} has no operator {operator}; only {only} has it")
+    stage = stages.of(stage, modality, operator, levels)
+    if not stage and modality in quantities.NOT_OF.get(operator, ()):
+        raise ValueError(f"{operator} changes forces and has no effect on {modality}, which receives none; choose another operator, for example rate")
+    low = [l for l in levels if 0 < l < quantities.SMALLEST.get(operator, 0)]
+    if low:
+        raise ValueError(f"the level {low[0]:g} of {operator} is too small; give 0, or at least {quantities.SMALLEST[operator]:g} {quantities.OPERATORS[operator][0]}")
+    return Factor(modality, operator, stage)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -34,8 +49,14 @@ class Condition:
     factors: tuple = ()   # Factors of a factor (one) or a pair (two)
     removed: str = ""     # remove: the modality, and how: off or freeze
     how: str = ""
+    stage: str = ""       # of the removed modality
     levels: tuple = ()
     fixed: object = None  # the level of a performance condition
+
+    @property
+    def acts_in_participant(self):
+        """Whether it degrades the perception of a simulated participant, and not the apparatus."""
+        return stages.PERCEPT in (self.stage, *(f.stage for f in self.factors))
 
     def elements(self, level):
         """Elements of the profile at this level; None: the condition is not applied."""
@@ -48,7 +69,7 @@ class Condition:
             levels = level if self.kind == "pair" else (level,)
             return [e for factor, l in zip(self.factors, levels) if (e := factor.degrade(l))]
         if self.kind == "remove":
-            return [f'<degrade modality="{self.removed}" {"off" if self.how == "off" else "freeze"}="{"true" if self.how == "off" else "hold"}"/>']
+            return [f'<degrade modality="{self.removed}" {stages.attribute(self.stage)}{"off" if self.how == "off" else "freeze"}="{"true" if self.how == "off" else "hold"}"/>']
         return []
 
     @property
@@ -74,12 +95,12 @@ class Condition:
             names = (("modality_degraded", "operator", "level", "unit"), ("second_modality", "second_operator", "second_level", "second_unit"))
             row = {}
             for factor, l, columns in zip(self.factors, levels, names):
-                row.update(zip(columns, (factor.modality, factor.operator, l, factor.unit)))
+                row.update(zip(columns, (stages.named(factor.modality, factor.stage), factor.operator, l, factor.unit)))
                 if factor.operator == "loss":
                     row["loss_nominal"] = l / 100
             return row
         if self.kind == "remove":
-            return {"modality_degraded": self.removed, "operator": self.how}
+            return {"modality_degraded": stages.named(self.removed, self.stage), "operator": self.how}
         return {}
 
 
@@ -87,7 +108,7 @@ def fixed_ones(condition):
     """One condition for each level of a condition, for a performance study."""
     if condition.kind in ("remove", "nothing"):
         return [condition]
-    def named(level):
+    def name_of(level):
         parts = [f"{f.words()} {quantities.written(l)}{f.unit}" for f, l in zip(condition.factors, level if condition.kind == "pair" else (level,))]
         return " + ".join(parts) if parts else f"{condition.id} {quantities.written(level)}ms"
-    return [dataclasses.replace(condition, id=named(level), fixed=level, levels=(level,)) for level in condition.levels]
+    return [dataclasses.replace(condition, id=name_of(level), fixed=level, levels=(level,)) for level in condition.levels]

@@ -2,6 +2,7 @@
 import re
 
 from tactus.refusal import Refusal
+from tactus.study import stages
 
 TIME_MS = {"us": 1e-3, "ms": 1.0, "s": 1e3}
 # Operator of a study: (unit of its levels, factor of each permitted unit, least, most). The ranges are those of
@@ -42,15 +43,17 @@ def written(value):
     return f"{value:.9g}"
 
 
-def degrade(modality, operator, level):
-    """Profile element (sync/degradation/README.md) that applies the operator to a sense at this level. A jitter has a constant delay of JITTER_DELAY times
-    its level: compare it with network_delay at that delay. Touch quantises the commanded force."""
+def degrade(modality, operator, level, stage=""):
+    """Profile element (sync/degradation/README.md) that applies the operator to a sense, at a stage of touch or ("") at its input, at this level. A jitter
+    has a constant delay of JITTER_DELAY times its level: compare it with network_delay at that delay. Touch quantises the commanded force."""
     unit = OPERATORS[operator][0]
     words = {"network_delay": f'delay="{written(level)}ms network"', "jitter": f'jitter="{written(level)}ms normal" delay="{written(JITTER_DELAY * level)}ms network"'}
-    if (modality, operator) == ("haptic", "quantise"):
+    if stage and operator == "deadband":
+        words["deadband"] = f'deadband="{written(level)}% force"'
+    if (modality, operator, stage) == ("haptic", "quantise", ""):
         words["quantise"] = f'force_step="{written(level)}{unit}"'
     words.setdefault(operator, f'{operator}="{written(level)}{unit}"')
-    return f'<degrade modality="{modality}" {words[operator]}/>'
+    return f'<degrade modality="{modality}" {stages.attribute(stage)}{words[operator]}/>'
 
 
 def nothing(operator, level):

@@ -49,6 +49,9 @@ def main(words):
     try:
         options = parsed(words)
         study = study_file.read(options.study)
+        if any(c.acts_in_participant for c in study.conditions) and not (options.simulated and study.task == "game"):
+            raise Refusal(f"{options.study}: the stage percept acts in the simulated player only, and a person feels the device itself; add --simulated to a study with "
+                          'task="game", or use study sweep')
         if options.simulated and study.task != "game" and any(study.observer(c) is None for c in study.conditions):
             raise Refusal(f"{options.study}: has no <observer> for {next(c.id for c in study.conditions if study.observer(c) is None)}; add one, or leave out --simulated")
         if options.window or options.live is not None:

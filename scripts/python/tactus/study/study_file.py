@@ -11,7 +11,7 @@ from tactus import own_files
 from tactus.paths import SCENES, SCRIPTS
 from tactus.psychophysics import functions, observers
 from tactus.refusal import Refusal
-from tactus.study import conditions, procedure_element, quantities, texts
+from tactus.study import conditions, procedure_element, quantities, stages, texts
 from tactus.tables import decoded
 
 SCHEMA = pathlib.Path(__file__).with_name("study.xsd")
@@ -237,18 +237,17 @@ class Reading:
         return "<degrade " + " ".join(f"{k}={quoteattr(v)}" for k, v in e.attrib.items()) + "/>"
 
     def factor(self, e):
-        operator = e.get("operator")
-        levels = tuple(quantities.read(t, quantities.OPERATORS[operator], self.where(e)) for t in e.get("levels").split())
+        levels = tuple(quantities.read(t, quantities.OPERATORS[e.get("operator")], self.where(e)) for t in e.get("levels").split())
         self.distinct(e, levels)
-        modality, only = self.sense(e, e.get("modality")), quantities.OUTPUT_OF.get(operator)
-        if only not in (None, modality):
-            self.refuse(e, f"{modality} has no operator {operator}; only {only} has it")
-        if modality in quantities.NOT_OF.get(operator, ()):
-            self.refuse(e, f"{operator} changes forces and has no effect on {modality}, which receives none; choose another operator, for example rate")
-        low = [l for l in levels if 0 < l < quantities.SMALLEST.get(operator, 0)]
-        if low:
-            self.refuse(e, f"the level {low[0]:g} of {operator} is too small; give 0, or at least {quantities.SMALLEST[operator]:g} {quantities.OPERATORS[operator][0]}")
-        return conditions.Factor(modality, operator), levels
+        modality = self.sense(e, e.get("modality"))
+        return self.checked(e, conditions.factor, modality, e.get("operator"), e.get("stage"), levels), levels
+
+    def checked(self, e, make, *of):
+        """make(*of), whose ValueError is a refusal of the element."""
+        try:
+            return make(*of)
+        except ValueError as error:
+            self.refuse(e, str(error))
 
     def distinct(self, e, levels):
         if not levels or len(set(levels)) < len(levels):
@@ -276,7 +275,9 @@ class Reading:
                 one = conditions.Condition(" x ".join(f.words() for f in factors), "pair", factors=factors, levels=tuple(itertools.product(*levels)))
             elif e.tag == "remove":
                 modality = self.sense(e, e.get("modality"))
-                one = conditions.Condition(f"{modality} removed", "remove", removed=modality, how=e.get("how", "off"))
+                how = e.get("how", "off")
+                stage = self.checked(e, stages.of, e.get("stage"), modality, how)
+                one = conditions.Condition(f"{stages.named(modality, stage)} removed", "remove", removed=modality, how=how, stage=stage)
             else:
                 one = conditions.Condition("nothing degraded", "nothing")
             if kind in ("synchrony", "order") and one.kind != "asynchrony":
@@ -326,7 +327,7 @@ class Reading:
 
     def check_recovery(self, e, found):
         """Refuses operators that would still affect the other press of a comparison."""
-        slow = next((f for c in found for f in c.factors if f.modality == "haptic" and f.operator in SLOW_RECOVERY), None)
+        slow = next((f for c in found for f in c.factors if f.modality == "haptic" and not f.stage and f.operator in SLOW_RECOVERY), None)
         if slow is not None:
             self.refuse(e, f"touch recovers from {slow.operator} within seconds only, so that the other press would be softer too; compare the stiffness of two presses under a delay")
 
@@ -392,7 +393,4 @@ class Reading:
         """Refuses an observer of felt stiffness in a study that does not compare stiffness."""
         if kind != "two_interval" or not self.of(self.root.find("response"), kind):
             self.refuse(e, f"{name} judges which of two presses felt softer; ask for that with <response kind=\"two_interval\" of=\"stiffness\">")
-        try:
-            observers.PERCEPTS[name](**params, seed=1)
-        except ValueError as error:
-            self.refuse(e, str(error))
+        self.checked(e, lambda: observers.PERCEPTS[name](**params, seed=1))

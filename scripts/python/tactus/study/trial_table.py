@@ -36,7 +36,7 @@ COLUMNS = {
     "task": Column("", "task of the participant: sj synchrony judgement, toj temporal order judgement, 2ifc which of two intervals, rating, matching, "
                        "game", levels=("sj", "toj", "2ifc", "rating", "matching", "game", "free")),
     "pair": Column("", "the two senses of the judged asynchrony, as a,b: SOA(a, b) = t_present(b) - t_present(a), positive when b is later"),
-    "modality_degraded": Column("", "degraded sense; empty: none"),
+    "modality_degraded": Column("", "degraded sense, for a stage of touch with its name: haptic:action, haptic:force or haptic:percept; empty: none"),
     "operator": Column("", "operator that degraded it: delay, jitter, loss, rate, ... as sync/degradation names it"),
     "level": Column("of the column unit", "requested level of the operator", "number"),
     "unit": Column("", "unit of level"),
@@ -66,7 +66,7 @@ COLUMNS = {
     "observer": Column("", "source of the answers: a human, or a simulated observer or player", levels=("human", "simulated")),
     "study": Column("", "name of the study"),
     "condition": Column("", "name of the condition within the study"),
-    "second_modality": Column("", "second sense, degraded at the same time; empty: none"),
+    "second_modality": Column("", "second sense, degraded at the same time, as modality_degraded; empty: none"),
     "second_operator": Column("", "operator that degraded the second sense"),
     "second_level": Column("of the column second_unit", "requested level of the second operator", "number"),
     "second_unit": Column("", "unit of second_level"),
