@@ -72,7 +72,8 @@ def section(struct, names):
     yield f"{struct.meaning.replace('<', '&lt;')}\n"
     yield "| field | type | meaning |\n|---|---|---|"
     for field in struct.fields:
-        yield f"| `{field.name}` | {kind_of(field, names)} | {cell(field.meaning)} |"
+        meaning = field.meaning or ("Sender, times and number of the message." if field.kind == "header_t" else "")
+        yield f"| `{field.name}` | {kind_of(field, names)} | {cell(meaning)} |"
         for name, value, meaning in field.constants:
             yield f"| | `{name}` = {value} | {cell(meaning)} |"
     yield ""

@@ -5,7 +5,7 @@ import re
 
 FENCE = re.compile(r"^```(\w*)(?: title=\"([^\"]*)\")?$")
 # Titles of sh blocks that are commands; any other title is the name of a file.
-WAYS = ("", "is refused", "first terminal", "second terminal", "needs root", "needs a person")
+WAYS = ("", "is refused", "first terminal", "second terminal", "needs root", "needs a person", "needs tactus-dev")
 SHOWN = ("text", "cpp", "json", "cmake")  # blocks without a title in these languages are shown only; xml without a title is a part of a file
 
 
@@ -26,7 +26,7 @@ def way_of(language, title, line):
     if language == "sh" and title in WAYS:
         return title or "run"
     if title:
-        if not re.fullmatch(r"[\w-]+(\.[\w-]+)*", title):
+        if not re.fullmatch(r"([\w-]+/)?[\w-]+(\.[\w-]+)*", title):
             raise BlockError(f"line {line}: '{title}' is no way to run a block and no name of a file; use one of {', '.join(WAYS[1:])}, or a file name")
         return "file"
     if language in SHOWN or language == "xml":
