@@ -31,7 +31,7 @@ def configuration(docs, site, theme, nav):
                   "features": ["navigation.tabs", "navigation.sections", "navigation.indexes", "navigation.top", "toc.follow", "search.highlight", "search.suggest"],
                   "palette": [{"scheme": "default", "media": "(prefers-color-scheme: light)", "toggle": {"icon": "material/weather-night", "name": "Dark colours"}},
                               {"scheme": "slate", "media": "(prefers-color-scheme: dark)", "toggle": {"icon": "material/weather-sunny", "name": "Light colours"}}]},
-        "plugins": [{"search": {"lang": "en"}}], "extra_css": ["tactus/site.css"], "extra": {"generator": False}, "nav": nav}
+        "plugins": [{"search": {"lang": "en"}}], "extra_css": ["tactus/site.css"], "extra_javascript": ["tactus/keyboard.js"], "extra": {"generator": False}, "nav": nav}
     return "\n".join(f"{key}: {json.dumps(value)}" for key, value in data.items()) + EXTENSIONS
 
 
