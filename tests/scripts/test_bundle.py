@@ -12,7 +12,7 @@ NPM = """#!/bin/sh
 echo "$@" >>"{asked}"
 mkdir -p node_modules/.bin
 touch node_modules/.package-lock.json
-case "$*" in *--omit=dev*) ;; *) mkdir -p node_modules/puppeteer-core ;; esac
+case "$*" in *--omit=dev*) ;; *) mkdir -p node_modules/puppeteer-core node_modules/axe-core ;; esac
 printf '#!/bin/sh\\nmkdir -p dist; touch dist/main.js\\n' >node_modules/.bin/esbuild
 printf '#!/bin/sh\\n' >node_modules/.bin/tsc
 chmod +x node_modules/.bin/*

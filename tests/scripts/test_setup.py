@@ -37,7 +37,7 @@ exec "$@"
 """
 # Programs that listen on a network, display servers, browsers, and tools that only speed up or test a build.
 UNWANTED = {"openssh-server", "slurm-wlm", "openvpn", "nftables", "chromium", "xvfb", "xdotool", "ccache", "mold", "catch2", "libbenchmark-dev", "nodejs", "npm",
-            "python3-statsmodels", "parallel"}
+            "python3-statsmodels", "parallel", "mkdocs", "mkdocs-material"}
 
 
 class Setup(unittest.TestCase):
@@ -87,7 +87,7 @@ class Setup(unittest.TestCase):
 
     def test_the_check_lists_every_group_and_an_unknown_one_is_refused(self):
         _, said = self.setup("--check", status=1)
-        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "test"):
+        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "docs", "test"):
             self.assertIn(f"packages for {group}: missing ", said)
         for name in ("servers", "", "build run", "$(touch sprung)"):
             self.assertIn("there is no group", self.setup(name, status=1)[1])

@@ -36,6 +36,20 @@ class Connections(unittest.TestCase):
         said = subprocess.run([*inside, sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
         self.assertNotEqual(str(host_connection.control_folder(None)), said)
 
+    def test_the_path_of_a_socket_is_short_enough_for_folders_of_every_length(self):
+        home = os.environ.get("HOME")
+        self.addCleanup(lambda: os.environ.update(HOME=home) if home else os.environ.pop("HOME"))
+        for length in range(1, 70, 3):
+            for variable in ("HOME", "XDG_RUNTIME_DIR"):
+                with tempfile.TemporaryDirectory(dir="/tmp") as folder, self.subTest(variable=variable, length=length):
+                    long = pathlib.Path(folder, "h" * length)
+                    long.mkdir(mode=0o700)
+                    os.environ.pop("XDG_RUNTIME_DIR", None)
+                    os.environ[variable] = str(long)
+                    # ssh replaces %C by 40 digits, and adds a dot and 16 letters while it connects; a socket's path has at most 107 bytes (unix(7)).
+                    path = self.path(None).partition("=")[2].replace("%C", "c" * 40) + "." + "r" * 16
+                    self.assertLessEqual(len(os.fsencode(path)), 107)
+
     def test_only_the_owner_can_read_the_folder(self):
         self.assertEqual(0o700, host_connection.control_folder(None).stat().st_mode & 0o777)
 

@@ -3,6 +3,7 @@ import "uplot/dist/uPlot.min.css";
 import "./page.css";
 import { Connection } from "./connection";
 import { Common, Frame, Hello, ServerMessage, element } from "./messages";
+import { Display } from "./display";
 import { Picture } from "./picture";
 import { Raster } from "./raster";
 import { ModalityTables } from "./modalities";
@@ -18,10 +19,12 @@ const picture = new Picture(send);
 const study = new StudyPanel(send);
 const sliders = new Sliders((senses, clear) => send({ t: "degrade", senses, clear }));
 
+new Display(() => { variables.rebuild(); sliders.build(); });
+
 let toastTimer = 0;
 function toast(text: string, good: boolean): void {
   const box = element("toast");
-  box.textContent = text;
+  box.textContent = good ? text : `\u26a0 ${text}`;  // a sign, not only a colour
   box.className = good ? "on" : "on bad";
   clearTimeout(toastTimer);
   toastTimer = window.setTimeout(() => { box.className = ""; }, 4000);

@@ -33,8 +33,6 @@ export interface Frame extends Common {
 export interface Reply { t: "reply"; text: string; good: boolean }
 export type ServerMessage = Hello | Frame | Reply;
 
-export const modalityColour: Record<string, string> = { haptic: "#e69f00", audio: "#56b4e9", visual: "#cc79a7", thermal: "#d9622b", world: "#9aa4b2" };
-export const colourOf = (modality: string): string => modalityColour[modality.split(":")[0]!] ?? "#009e73";
 export function element<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page lacks #${id}`);

@@ -1,5 +1,6 @@
 // Rate, latency and asynchrony of the modalities, with the published thresholds; and their nodes.
-import { NodeHealth, Pair, Presentation, ModalityReport, Threshold, colourOf, element, make } from "./messages";
+import { NodeHealth, Pair, Presentation, ModalityReport, Threshold, element, make } from "./messages";
+import { colourOf, css, swatch } from "./palette";
 
 const STATES = ["waiting", "running", "stale", "input lost", "output lost", "ready"];
 const SPAN_MS = 250;  // of the scale of asynchrony, to both sides
@@ -8,6 +9,7 @@ const MEMORY_S = 30;
 function row(cells: [string, string][], heading = false): HTMLElement {
   const tr = document.createElement("tr");
   for (const [text, className] of cells) tr.append(make(heading ? "th" : "td", className, text));
+  if (heading) for (const cell of tr.children) cell.setAttribute("scope", "col");
   return tr;
 }
 const quantile = (sorted: number[], q: number): number => sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))]!;
@@ -16,6 +18,7 @@ export class ModalityTables {
   private latencies = new Map<string, [number, number][]>();
   private health: NodeHealth[] = [];
   private reports: ModalityReport[] = [];
+  private pairs = new Map<string, HTMLElement>();
   thresholds: Threshold[] = [];
   presented(list: Presentation[]): void {
     for (const [t, modality, part, , latency] of list) {
@@ -35,23 +38,38 @@ export class ModalityTables {
       const state = h.lost ? "LOST" : STATES[h.state] ?? "?";
       const tr = row([[h.node, "name"], [state, state === "running" ? "good" : "bad"], [String(h.missed), "n"], [String(h.gaps), "n"],
         [`${(h.tick_max_us / 1000).toFixed(1)} ms`, "n"], [h.modality ? (wanted !== "0" && h.profile === wanted ? "taken" : h.profile === "0" ? "none" : "other") : "", "quiet"]]);
-      tr.title = h.note;
+      if (h.note) tr.firstElementChild!.append(make("div", "quiet status", h.note));
       tr.dataset.node = h.node;
       return tr;
     }));
   }
   updateReport(report: { senses: ModalityReport[]; pairs: Pair[] }): void {
     this.reports = report.senses;
+    const shown = report.pairs.filter((p) => p.n > 0), names = new Set(shown.map((p) => `${p.a} → ${p.b}`));
     const box = element("pairs");
-    const shown = report.pairs.filter((p) => p.n > 0);
-    box.replaceChildren(...(shown.length ? shown.map((p) => this.pair(p)) : [make("p", "quiet", "no event has been presented by two senses yet")]));
-    requestAnimationFrame(() => shown.forEach((p, i) => this.drawPair(box.children[i]!.querySelector("canvas")!, p)));
+    for (const [name, e] of this.pairs) if (!names.has(name)) { e.remove(); this.pairs.delete(name); }
+    if (!shown.length) box.replaceChildren(make("p", "quiet", "no event has been presented by two senses yet"));
+    else box.querySelector("p.quiet:not(.sources)")?.remove();
+    for (const p of shown) this.showPair(box, p);
+    requestAnimationFrame(() => shown.forEach((p) => this.drawPair(this.pairs.get(`${p.a} → ${p.b}`)!.querySelector("canvas")!, p)));
   }
-  private pair(p: Pair): HTMLElement {
-    const div = make("div", "pair");
-    div.append(make("span", "", `${p.a} → ${p.b}`), document.createElement("canvas"), make("span", "value", `${p.p50_ms.toFixed(1)} ms`));
-    div.title = `${p.n} events: 5 % ${p.p05_ms.toFixed(1)} ms, 50 % ${p.p50_ms.toFixed(1)} ms, 95 % ${p.p95_ms.toFixed(1)} ms; ${p.beyond_least < 0 ? "no threshold is published" : p.beyond_least + " beyond the least threshold"}${this.sources(p)}`;
-    return div;
+  // One row, which opens to the numbers and the published thresholds. It stays the same element, so that focus and state remain.
+  private showPair(box: HTMLElement, p: Pair): void {
+    const name = `${p.a} → ${p.b}`;
+    let e = this.pairs.get(name);
+    if (!e) {
+      const summary = make("summary", "pair"), canvas = document.createElement("canvas");
+      canvas.setAttribute("aria-hidden", "true");
+      summary.append(make("span", "", name), canvas, make("span", "value"));
+      e = make("details");
+      e.append(summary, make("p", "quiet sources"));
+      box.append(e);
+      this.pairs.set(name, e);
+    }
+    e.querySelector(".value")!.textContent = `${p.p50_ms.toFixed(1)} ms`;
+    const text = `${p.n} events: 5 % ${p.p05_ms.toFixed(1)} ms, 50 % ${p.p50_ms.toFixed(1)} ms, 95 % ${p.p95_ms.toFixed(1)} ms; ${p.beyond_least < 0 ? "no threshold is published" : p.beyond_least + " beyond the least threshold"}${this.sources(p)}`;
+    e.querySelector(".sources")!.textContent = text;
+    e.title = text;
   }
   // The published thresholds of a pair, in both directions: the studies disagree, so all are listed.
   private sources(p: Pair): string {
@@ -67,18 +85,19 @@ export class ModalityTables {
     const scale = devicePixelRatio, w = (canvas.width = canvas.clientWidth * scale), h = (canvas.height = canvas.clientHeight * scale);
     const g = canvas.getContext("2d")!;
     const x = (ms: number) => w / 2 + (Math.max(-SPAN_MS, Math.min(SPAN_MS, ms)) / SPAN_MS) * (w / 2 - 2);
-    g.fillStyle = "#20252d"; g.fillRect(0, 0, w, h);
+    g.fillStyle = css("field"); g.fillRect(0, 0, w, h);
     for (const [sign, of] of [[1, this.range(p.a, p.b)], [-1, this.range(p.b, p.a)]] as [number, [number, number] | undefined][]) {
       if (!of) continue;
-      for (const [ms, colour] of [[of[1], "#36414d"], [of[0], "#3d5f47"]] as [number, string][]) {
+      // The inner band has the full height, the outer one half of it.
+      for (const [ms, colour, part] of [[of[1], css("largest"), 0.5], [of[0], css("least"), 1]] as [number, string, number][]) {
         g.fillStyle = colour;
-        g.fillRect(Math.min(x(0), x(sign * ms)), 0, Math.abs(x(ms) - x(0)), h);
+        g.fillRect(Math.min(x(0), x(sign * ms)), (h * (1 - part)) / 2, Math.abs(x(ms) - x(0)), h * part);
       }
     }
-    g.fillStyle = "#8b95a3"; g.fillRect(w / 2, 0, 1, h);
+    g.fillStyle = css("quiet"); g.fillRect(w / 2, 0, 1, h);
     g.fillStyle = colourOf(p.b); g.globalAlpha = 0.75;
     g.fillRect(x(p.p05_ms), h * 0.3, Math.max(2, x(p.p95_ms) - x(p.p05_ms)), h * 0.4);
-    g.globalAlpha = 1; g.fillStyle = "#fff"; g.fillRect(x(p.p50_ms) - scale, h * 0.12, 2 * scale, h * 0.76);
+    g.globalAlpha = 1; g.fillStyle = css("text"); g.fillRect(x(p.p50_ms) - scale, h * 0.12, 2 * scale, h * 0.76);
   }
   draw(now: number): void {
     const rows = this.modalities().map((m) => {
@@ -89,8 +108,11 @@ export class ModalityTables {
       const tr = row([[m, "name"], [`${h.rate_Hz.toFixed(0)} / ${h.nominal_Hz.toFixed(0)} Hz`, slow ? "n bad" : "n"],
         [of.length ? `${quantile(of, 0.5).toFixed(1)} ms` : "–", "n"], [of.length ? `${quantile(of, 0.95).toFixed(1)} ms` : "–", "n"],
         [report ? `${report.presented} / ${report.expected}` : "–", "n"], [report ? String(report.lost) : "–", report && report.lost ? "n bad" : "n"]]);
-      (tr.firstElementChild as HTMLElement).style.color = colourOf(m);
+      const name = tr.firstElementChild!;
+      name.prepend(swatch(m));
+      if (slow) name.append(make("span", "bad", h.lost ? " ⚠ lost" : " ⚠ slow"));
       tr.dataset.modality = m;
+      tr.dataset.colour = colourOf(m);
       return tr;
     });
     element("senses").replaceChildren(row([["sense", ""], ["rate", ""], ["latency", ""], ["95 %", ""], ["presented", ""], ["lost", ""]], true), ...rows);

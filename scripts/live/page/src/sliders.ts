@@ -1,6 +1,7 @@
 // Delay, rate and loss of each modality. The sliders start at the values of the profile in force; the server changes only the
 // moved sliders' values in the profile, and keeps the rest.
-import { Degradation, SliderValues, colourOf, element, make } from "./messages";
+import { Degradation, SliderValues, element, make } from "./messages";
+import { swatch } from "./palette";
 
 // Rates on a scale that a slider can show; the last: unlimited.
 const RATES = [1, 2, 5, 10, 15, 20, 30, 60, 120, 250, 500, 0];
@@ -60,23 +61,28 @@ export class Sliders {
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => this.send(Object.fromEntries(this.settings), false), 150);  // once the hand rests
   }
-  private build(): void {
+  // The focus stays on its slider.
+  build(): void {
+    const focused = document.activeElement?.closest("#sliders") ? document.activeElement.id : "";
     element("sliders").replaceChildren(...[...this.settings.keys()].sort().map((m) => {
       const s = this.settings.get(m)!, box = make("div", "sense"), name = make("span", "name", this.more.has(m) ? `${m} +` : m);
-      name.style.color = colourOf(m);
+      name.prepend(swatch(m));
       if (this.more.has(m)) name.title = "the profile in force has further operators of this modality, which the sliders keep";
       box.append(name,
-        this.slider(`${m}-delay`, "delay", 500, 5, s.delay_ms, labels.delay(s), (v) => { s.delay_ms = v; return labels.delay(s); }),
-        this.slider(`${m}-rate`, "rate", RATES.length - 1, 1, nearest(s.rate_Hz), labels.rate(s), (v) => { s.rate_Hz = RATES[v]!; return labels.rate(s); }),
-        this.slider(`${m}-loss`, "loss", 100, 1, s.loss * 100, labels.loss(s), (v) => { s.loss = v / 100; return labels.loss(s); }));
+        this.slider(m, "delay", 500, 5, s.delay_ms, labels.delay(s), (v) => { s.delay_ms = v; return labels.delay(s); }),
+        this.slider(m, "rate", RATES.length - 1, 1, nearest(s.rate_Hz), labels.rate(s), (v) => { s.rate_Hz = RATES[v]!; return labels.rate(s); }),
+        this.slider(m, "loss", 100, 1, s.loss * 100, labels.loss(s), (v) => { s.loss = v / 100; return labels.loss(s); }));
       return box;
     }));
+    if (focused) document.getElementById(focused)?.focus();
   }
-  private slider(id: string, title: string, max: number, step: number, value: number, text: string, set: (v: number) => string): HTMLElement {
+  private slider(modality: string, title: string, max: number, step: number, value: number, text: string, set: (v: number) => string): HTMLElement {
     const label = document.createElement("label"), shown = make("b", "", text), input = document.createElement("input");
-    Object.assign(input, { type: "range", id, min: "0", max: String(max), step: String(step) });
+    Object.assign(input, { type: "range", id: `${modality}-${title}`, min: "0", max: String(max), step: String(step) });
     input.value = String(value);
-    input.addEventListener("input", () => { shown.textContent = set(Number(input.value)); this.changed(); });
+    input.setAttribute("aria-label", `${title} of ${modality}`);
+    input.setAttribute("aria-valuetext", text);
+    input.addEventListener("input", () => { shown.textContent = set(Number(input.value)); input.setAttribute("aria-valuetext", shown.textContent); this.changed(); });
     label.append(title, shown, input);
     return label;
   }

@@ -30,6 +30,7 @@ export class StudyPanel {
     document.body.classList.toggle("participant", participant);
     if (!participant) return;
     document.addEventListener("keydown", (e) => {
+      if ((e.target as Element).closest?.("#display")) return;  // keys of its own
       const press = e.ctrlKey || e.altKey || e.metaKey ? undefined : pressOfKey(e.key);
       if (!press || (e.repeat && !press.fine && !press.coarse)) return;
       if (this.press(press, e.timeStamp)) e.preventDefault();
@@ -65,7 +66,7 @@ export class StudyPanel {
     if (!m) return;
     const problem = problemOf(m);
     if (problem) this.box.append(problem);
-    this.box.append(says("p", "asked", m.text));
+    this.box.append(says("h1", "asked", m.text));
     const answers = make("div", "answers");
     answers.dir = directionOf(m.text);  // the keys are where a line begins
     if (m.kind === "choice") m.choices.forEach((c, i) => answers.append(this.button(c, String(i + 1), { choice: i })));
@@ -90,6 +91,7 @@ export class StudyPanel {
   private slide(m: Study): HTMLElement {
     const box = make("div", "slide"), input = document.createElement("input"), ends = make("div", "ends"), mark = this.state.mark!;
     Object.assign(input, { type: "range", id: "mark", min: "0", max: String(mark.steps), step: "1" });
+    input.setAttribute("aria-label", m.text);
     input.addEventListener("input", () => { mark.place = Number(input.value); this.showMark(); });
     const words = m.choices.length === 2 ? m.choices : [mark.text(m.lowest), mark.text(m.highest)];
     ends.append(...words.map((w) => says("span", "", w)));
@@ -101,6 +103,7 @@ export class StudyPanel {
     const mark = this.state.mark, output = this.box.querySelector("output");
     if (!mark || !this.slider || !output) return;
     this.slider.value = String(mark.place);
+    this.slider.setAttribute("aria-valuetext", mark.text());
     output.textContent = mark.text();
   }
   // For observers: without answer controls.

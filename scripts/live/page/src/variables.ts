@@ -1,6 +1,7 @@
 // Cards of variables: a graph over time, a bar or text, as selected by the user.
 import uPlot from "uplot";
 import { VariableInfo, NodeHealth, Value, element, figure, make } from "./messages";
+import { MAX_CURVES, css, curve, sample, textScale } from "./palette";
 
 const SPAN_S = 20;
 const MAX_CARDS = 24;
@@ -8,7 +9,6 @@ type Kind = "graph" | "bar" | "text";
 // The values of a variable from one sender: two hands both send TOOL_STATE.
 interface Series { source: number; times: number[]; values: number[] }
 interface Card { name: string; kind: Kind; box: HTMLElement; body: HTMLElement; value: HTMLElement; series: Series[]; min: number; max: number; plot?: uPlot }
-const COLOURS = ["#7aa7e0", "#e69f00", "#cc79a7", "#009e73", "#f0e442", "#d9622b", "#9aa4b2", "#ffffff"];  // one for each sender that the server distinguishes
 
 export class Variables {
   private cards: Card[] = [];
@@ -22,8 +22,9 @@ export class Variables {
       const name = choose.value.trim();
       if (name) { this.add(name, "graph"); choose.value = ""; }
     });
-    window.addEventListener("resize", () => this.cards.forEach((c) => this.build(c)));
+    window.addEventListener("resize", () => this.rebuild());
   }
+  rebuild(): void { this.cards.forEach((c) => this.build(c)); }
   catalog(known?: VariableInfo[], tags?: VariableInfo[]): void {
     if (known) this.known = known;
     if (tags) this.tags = tags;
@@ -61,6 +62,9 @@ export class Variables {
     for (const k of ["graph", "bar", "text"]) select.append(new Option(k, k, false, k === kind));
     const remove = make("button", "", "×");
     remove.title = "remove";
+    remove.setAttribute("aria-label", `remove ${name}`);
+    select.setAttribute("aria-label", `form of ${name}`);
+    body.setAttribute("role", "img");
     head.append(make("span", "name", name), value, select, remove);
     head.firstElementChild!.setAttribute("title", name);
     box.append(head, body);
@@ -77,12 +81,12 @@ export class Variables {
     card.plot = undefined;
     card.body.replaceChildren();
     if (card.kind === "graph") {
-      const quiet = { stroke: "#8b95a3", grid: { stroke: "#2b313b", width: 1 }, ticks: { show: false }, font: "10px DejaVu Sans, sans-serif" };
+      const scale = textScale(), quiet = { stroke: css("quiet"), grid: { stroke: css("line"), width: 1 }, ticks: { show: false }, font: `${10 * scale}px DejaVu Sans, sans-serif` };
       card.plot = new uPlot({
-        width: Math.max(200, card.box.clientWidth - 18), height: 96, cursor: { show: false }, legend: { show: false },
+        width: Math.max(200, card.box.clientWidth - 18), height: 96 * scale, cursor: { show: false }, legend: { show: false },
         scales: { x: { time: false } },
-        axes: [{ ...quiet, size: 22, splits: () => [-20, -15, -10, -5, 0], values: (_u: uPlot, ticks: number[]) => ticks.map((t) => `${t.toFixed(0)} s`) }, { ...quiet, size: 62, space: 24, values: (_u: uPlot, ticks: number[]) => ticks.map((v) => Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(1) : String(+v.toPrecision(6))) }],
-        series: [{}, ...card.series.map((_, k) => ({ stroke: COLOURS[k % COLOURS.length]!, width: 1.5, spanGaps: true, points: { show: false } }))],
+        axes: [{ ...quiet, size: 22 * scale, splits: () => [-20, -15, -10, -5, 0], values: (_u: uPlot, ticks: number[]) => ticks.map((t) => `${t.toFixed(0)} s`) }, { ...quiet, size: 62 * scale, space: 24 * scale, values: (_u: uPlot, ticks: number[]) => ticks.map((v) => Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(1) : String(+v.toPrecision(6))) }],
+        series: [{}, ...card.series.map((_, k) => ({ stroke: curve(k).colour, dash: curve(k).dash, width: 1.5 * scale, spanGaps: true, points: { show: false } }))],
       }, [[], ...card.series.map(() => [])], card.body);
     } else if (card.kind === "bar") {
       const bar = make("div", "bar");
@@ -98,7 +102,7 @@ export class Variables {
       if (!c) continue;
       let s = c.series.find((of) => of.source === source);
       if (!s) {
-        if (c.series.length >= COLOURS.length) continue;
+        if (c.series.length >= MAX_CURVES) continue;
         c.series.push((s = { source, times: [], values: [] }));
         this.build(c);
       }
@@ -120,15 +124,16 @@ export class Variables {
       else if (c.kind === "bar" && lasts.length) this.bar(c, lasts[0]!);
     }
   }
-  // The newest values as text, each in the colour of its curve when several processes send it.
+  // The newest values as text; with the line of its curve and the name of its process when several send it.
   private show(c: Card, lasts: number[], unit: string): void {
     const box = (c.kind === "text" ? c.body.firstElementChild : c.value) as HTMLElement;
     if (c.kind === "text") c.value.textContent = "";
+    c.body.setAttribute("aria-label", `${c.name}: ${lasts.map((v) => figure(v)).join(", ") || "no value yet"}${unit}`);
     if (lasts.length < 2) { box.textContent = lasts.length ? figure(lasts[0]!) + unit : "–"; box.title = ""; return; }
     box.replaceChildren(...lasts.map((v, k) => {
-      const span = make("span", "one", figure(v) + (k === lasts.length - 1 ? unit : ""));
-      span.style.color = COLOURS[k % COLOURS.length]!;
-      span.title = this.nodes.get(c.series[k]!.source) ?? "a sender without health messages";
+      const span = make("span", "one"), node = this.nodes.get(c.series[k]!.source);
+      span.append(sample(k), make("span", "quiet", node ?? "no health"), ` ${figure(v)}${k === lasts.length - 1 ? unit : ""}`);
+      span.title = node ?? "a sender without health messages";
       return span;
     }));
   }

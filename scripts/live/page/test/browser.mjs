@@ -21,14 +21,19 @@ export async function until(what, check, timeout_ms = TIMEOUT_MS) {
 }
 
 export class Browser {
-  static async open(url) {
-    const it = new Browser();
-    it.errors = [];
-    it.browser = await puppeteer.launch({
+  static launch() {
+    return puppeteer.launch({
       executablePath: "/usr/bin/chromium", headless: true,
       args: ["--disable-gpu", "--disable-dev-shm-usage", "--no-first-run", ...(process.getuid() === 0 ? ["--no-sandbox"] : [])],
     });
-    it.page = await it.browser.newPage();
+  }
+  // shared: a launched browser; the page has its own storage in it. Default: a browser of its own.
+  static async open(url, shared) {
+    const it = new Browser();
+    it.errors = [];
+    it.browser = shared ?? await Browser.launch();
+    it.context = shared ? await shared.createBrowserContext() : it.browser;
+    it.page = await it.context.newPage();
     await it.page.setViewport({ width: 1440, height: 1000 });
     it.page.on("pageerror", (error) => it.errors.push(error.message));
     it.page.on("console", (line) => { if (line.type() === "error") it.errors.push(line.text()); });
@@ -59,8 +64,9 @@ export class Browser {
     return this.page.evaluate(() => {
       const canvas = document.getElementById("raster"), rows = [...document.querySelectorAll("#senses tr[data-modality]")];
       const rgb = (css) => { const c = document.createElement("canvas").getContext("2d"); c.fillStyle = css; c.fillRect(0, 0, 1, 1); return c.getImageData(0, 0, 1, 1).data; };
-      const lanes = [["world", "#9aa4b2"], ...rows.map((r) => [r.dataset.modality, r.firstElementChild.style.color])];
-      const scale = devicePixelRatio, lane = 24 * scale, left = Math.ceil(82 * scale), background = rgb("#2b313b");
+      const variable = (name) => getComputedStyle(document.body).getPropertyValue(name).trim();
+      const lanes = [["world", variable("--world")], ...rows.map((r) => [r.dataset.modality, r.dataset.colour])];
+      const scale = devicePixelRatio, lane = 24 * scale, left = Math.ceil(82 * scale), background = rgb(variable("--line"));
       const far = (d, i, c) => (d[i] - c[0]) ** 2 + (d[i + 1] - c[1]) ** 2 + (d[i + 2] - c[2]) ** 2;
       return Object.fromEntries(lanes.map(([name, css], n) => {
         const own = rgb(css), d = canvas.getContext("2d").getImageData(left, n * lane, canvas.width - left, lane).data;
@@ -102,5 +108,5 @@ export class Browser {
   signal(number) {
     for (const pid of this.processes()) try { process.kill(pid, number); } catch { /* ended meanwhile */ }
   }
-  async close() { await this.browser.close(); }
+  async close() { await this.context.close(); }
 }

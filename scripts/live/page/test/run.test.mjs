@@ -38,6 +38,8 @@ function server_MB() {
 }
 
 const it = await Browser.open(url);
+// Number of nodes that have applied the profile in force.
+const taken = () => it.page.$$eval("#nodes td:last-child", (cells) => cells.filter((c) => c.innerText === "taken").length);
 try {
   await until("the page is connected and shows pictures", async () => /^connected/.test(await it.text("#link")) && (await it.pictures()) > 2);
   await until("all modalities are listed", async () => (await it.senses()).join() === "audio,haptic,thermal,visual" || it.senses());
@@ -99,12 +101,12 @@ try {
     return s.audio?.delay_ms === 80 && s.visual?.rate_Hz === 10 && s.haptic?.loss === 0.5 || s;
   });
   await until("all modalities have the profile", async () =>
-    /changed in the live page/.test(await it.text("#inforce")) && (await it.text("#nodes")).match(/taken/g)?.length === 4 || it.text("#nodes"));
+    /changed in the live page/.test(await it.text("#inforce")) && (await taken()) === 4 || it.text("#nodes"));
   mark("degraded");
   mark("clear");  // before the click: the message may be on the bus before the click returns
   await it.click("#clear");
   await until("all modalities are restored", async () =>
-    (await it.page.$eval("#inforce", (e) => e.dataset.senses)) === "{}" && (await it.text("#nodes")).match(/taken/g)?.length === 4 || it.text("#nodes"));
+    (await it.page.$eval("#inforce", (e) => e.dataset.senses)) === "{}" && (await taken()) === 4 || it.text("#nodes"));
   mark("cleared");
 
   // Pauses the world, advances it by 25 steps, resumes it, and resets it.

@@ -1,11 +1,12 @@
 """Figures of limits: all limits of a factor, the ratio of L_break to L_detect, and felt properties."""
 import numpy as np
 
+from tactus import palette
 from tactus.analysis.plot_style import BREAK, INK, PALE, colour, figures, stamp
 
 MARK = {"detect": "o", "appear": "s", "break": "D"}
 NAME = {"detect": "L_detect", "appear": "L_appear", "break": "L_break"}
-TINT = {"detect": "#2a6fb0", "appear": "#a8871d", "break": BREAK}
+TINT = palette.LIMIT
 
 
 def limits_figure(factor, found, thresholds, observer):

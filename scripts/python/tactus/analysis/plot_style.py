@@ -2,13 +2,14 @@
 
 import unicodedata
 
+from tactus import palette
 from tactus.report import figures
 from matplotlib import font_manager
 
 figures.matplotlib.rcParams["text.parse_math"] = False  # shows names literally
 
-INK, PALE, BREAK = "#222222", "#9aa7b5", "#b3261e"
-BANDS = ("#4e79a7", "#f28e2b", "#59a14f", "#b07aa1", "#76b7b2", "#9c755f", "#bab0ac")
+INK, PALE, BREAK = "#222222", "#9aa7b5", palette.LIMIT["break"]
+BANDS = palette.BANDS
 
 
 def colour(modality):

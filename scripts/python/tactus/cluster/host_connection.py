@@ -34,7 +34,7 @@ REQUEST_S = 10
 MAX_PARALLEL = 32
 LONGEST_SENTENCE = 1000           # characters of a message of a host
 LARGEST_ANSWER_BYTES = 128 << 20  # design: compiled shaders as base64 are the largest answer
-LONGEST_SOCKET_FOLDER = 45        # bytes: ssh adds 58 to the path of a socket, which holds 107 (unix(7))
+LONGEST_SOCKET_FOLDER = 40        # bytes: control_folder adds 9, ssh 58 to the path of a socket, which holds 107 (unix(7))
 
 
 class Unreachable(Exception):
@@ -55,13 +55,18 @@ def control_folder(ssh_config):
         raise Unreachable(f"no folder for the connections of ssh: {error}; set XDG_RUNTIME_DIR to your own folder") from None
 
 
+def fits(folder):
+    """Whether the path of a socket of ssh below this folder is short enough."""
+    return len(os.fsencode(folder)) <= LONGEST_SOCKET_FOLDER
+
+
 def socket_folder():
     """The first of these places that is private to the user, and short: the runtime folder of the login, the home, /tmp."""
     runtime = os.environ.get("XDG_RUNTIME_DIR")
-    if runtime and own_files.is_private_folder(runtime):
-        return own_files.make_private_folder(pathlib.Path(runtime) / "tactus")
+    if runtime and fits(in_runtime := pathlib.Path(runtime) / "tactus") and own_files.is_private_folder(runtime):
+        return own_files.make_private_folder(in_runtime)
     in_home = pathlib.Path("~/.cache/tactus/ssh").expanduser()
-    if in_home.is_absolute() and len(os.fsencode(in_home)) <= LONGEST_SOCKET_FOLDER and own_files.owner(in_home.parents[2]) == os.geteuid():
+    if in_home.is_absolute() and fits(in_home) and own_files.owner(in_home.parents[2]) == os.geteuid():
         return own_files.make_private_folder(in_home)
     return own_files.make_private_folder(f"/tmp/tactus-ssh-{os.geteuid()}")
 

@@ -3,11 +3,12 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
+from tactus import palette
 from tactus.modal_analysis import analysis as analyses, damping
 from tactus.refusal import Refusal
 
 LEFT, RIGHT, RANGE_DB = 64, 20, 90.0
-RECORDED, AGAIN, MARK = "#555", "#2166ac", "#b2182b"
+RECORDED, AGAIN, MARK = palette.GREY, palette.BLUE, palette.VERMILLION
 
 
 class Panel:
@@ -106,7 +107,7 @@ def damping_panel(box, a):
         panel.circle(m.frequency_Hz, m.damping_1_s, MARK, m.agrees, 2 + 4 * max(0.0, 1 + np.log10(m.amplitude / strongest) / 3))
     f = np.geomspace(low_Hz, high_Hz, 80)
     for curve, colour in ((damping.rayleigh(f, law["rayleigh_alpha_1_s"], law["rayleigh_beta_s"]), AGAIN),
-                          (damping.constant_loss(f, law["loss_factor"]), '#1b7837" stroke-dasharray="5 4')):
+                          (damping.constant_loss(f, law["loss_factor"]), f'{palette.GREEN}" stroke-dasharray="5 4')):
         inside = (curve >= panel.low) & (curve <= panel.high)
         panel.line(f[inside], curve[inside], colour, 1.5)
     return panel.out

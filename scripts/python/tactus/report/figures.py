@@ -2,6 +2,7 @@
 import base64
 import os
 
+from tactus import palette
 from tactus.plotting import matplotlib
 
 matplotlib.use("Agg")
@@ -14,9 +15,9 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 WIDTH_IN = 7.2
-COLOUR = {"simulation": "#555555", "haptic": "#c2562b", "haptic_push": "#e0a184", "audio": "#2a6fb0", "visual": "#3c8c50", "thermal": "#a8871d"}
-PHASE_COLOUR = {"collision": "#7b5ea7", "solve": "#b07aa1", "integrate": "#d4a6c8", "decode": "#76b7b2", "render": "#4e79a7", "other": "#bab0ac"}
-OF_LOG = ("#222222", "#6a3d9a", "#159a9a", "#d6559a", "#7f7f00", "#5a3a22")  # several logs in one figure; the first has the colours of the modalities
+COLOUR = palette.MODALITY
+PHASE_COLOUR = palette.PHASE
+OF_LOG = palette.SERIES  # several logs in one figure; the first has the colours of the modalities
 DASHES = ("-", ":", "--", "-.")
 NAME = {"haptic": "touch (hit)", "haptic_push": "touch (push)", "audio": "sound", "visual": "vision", "thermal": "warmth"}
 
