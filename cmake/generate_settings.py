@@ -142,6 +142,16 @@ def all_rows(out, sources):
     write(out, "\n".join(lines))
 
 
+def unverified(source):
+    """Names of the settings of this table whose source is marked as unverified in docs/constants.csv."""
+    root = os.path.dirname(os.path.dirname(os.path.abspath(source)))
+    path, table = os.path.join(root, "docs", "constants.csv"), f"{node_of(source)}/settings.csv"
+    if not os.path.exists(path):
+        return set()
+    with open(path, newline="", encoding="utf-8") as file:
+        return {row["constant"] for row in csv.DictReader(file) if row["table"] == table and row["status"] == "unverified"}
+
+
 def markdown(out, sources):
     lines = ["# Settings", "",
              "Every option and constant of every node. In a scene: `<tactus:NODE name=\"value\"/>` inside `<world>`, for",
@@ -150,8 +160,10 @@ def markdown(out, sources):
              "A limit that protects a person has a second, narrower range for scenes, because scenes arrive over the bus from any sender:",
              "a scene may tighten it; only `--set`, of `run` or of the node, loosens it beyond its default.",
              "Settings marked *live* can be changed while the node runs: `tactus set NODE NAME=VALUE`.",
+             "Sources marked *unverified* were not checked: [constants.csv](constants.csv) lists how the others were.",
              "Generated from each folder's `settings.csv` by `cmake/generate_settings.py`; a test keeps it up to date.", ""]
     for source in sources:
+        unchecked = unverified(source)
         lines += [f"## {node_of(source)}", "", "| name | unit | default | range | meaning | source |",
                   "|---|---|---|---|---|---|"]
         for row in read(source):
@@ -161,7 +173,8 @@ def markdown(out, sources):
                 limits += f"; in a scene {row[low]} .. {row[high]}"
             if row["live"]:
                 limits = (limits + "; " if limits else "") + "live"
-            cells = [f"`{row['name']}`", row["unit"].replace("|", ", "), row["default"], limits, row["meaning"], row["source"]]
+            cells = [f"`{row['name']}`", row["unit"].replace("|", ", "), row["default"], limits, row["meaning"],
+                     row["source"] + (" *(unverified)*" if row["name"] in unchecked else "")]
             lines.append("| " + " | ".join(c.replace("|", "\\|") for c in cells) + " |")
         lines.append("")
     write(out, "\n".join(lines))

@@ -21,7 +21,7 @@ struct ContactVelocity {
 Eigen::Vector3d rolling_of(const Eigen::Vector3d& over_a, const Eigen::Vector3d& over_b);
 
 // Detects motion: a contact that rests under load creeps and jitters without slipping, since the junctions yield
-// first, by about 10 um (Rabinowicz 1951, Proc. Phys. Soc. A 64, p. 668).
+// first, by about 10 um (Rabinowicz 1951, Proc. Phys. Soc. A 64, p. 668; unverified).
 class Presliding {
  public:
   void step(const Eigen::Vector3d& velocity_m_s, double dt_s);

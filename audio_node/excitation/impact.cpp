@@ -12,6 +12,7 @@
 #include "audio_node/signal/loudness.h"
 #include "audio_node/modal/measured_modes.h"
 #include "audio_node/excitation/peak.h"
+#include "audio_node/excitation/radiation.h"
 #include "audio_node/signal/plausible.h"
 #include "lcmtypes/vectors.h"
 
@@ -20,9 +21,6 @@ namespace {
 
 using std::numbers::pi;
 
-// Air at 20 degrees Celsius (Kinsler et al., Fundamentals of Acoustics, 4th ed., appendix A10).
-constexpr double kAirDensity_kg_m3 = 1.21;
-constexpr double kSoundSpeed_m_s = 343;
 // Bounds of plausible input; values beyond them are clamped.
 constexpr double kMaxMass_kg = 1e3, kMaxApproach_m_s = 50, kMinApproach_m_s = 1e-4, kMinCurvature_1_m = 1;
 // FoleyAutomatic, section 3: impulses at the first four modal frequencies, within 15 ms.
@@ -33,13 +31,6 @@ constexpr double kMicroWithin_s = 0.015;
 constexpr double kHardening = 0.2;
 // Value for a strike that is inaudible at any strength.
 constexpr float kInaudible = 2;
-
-// Radiation of an oscillating ball of radius a: pressure at 1 m ahead over rho c v is a (ka)^2 / sqrt(4 + (ka)^4)
-// (the dipole field with the velocity of the ball as boundary condition; Pierce, Acoustics, 1981, section 4.2).
-double radiation_m(double frequency_Hz, double radius_m) {
-  const double ka = 2 * pi * frequency_Hz * radius_m / kSoundSpeed_m_s;
-  return radius_m * ka * ka / std::sqrt(4 + ka * ka * ka * ka);
-}
 
 // The shape that represents a body: its largest collision shape.
 const shape_def_t* main_shape(const scene_t& scene, int body) {
@@ -167,12 +158,11 @@ std::optional<BodyPlace> Impacts::place_on_body(int body, const Eigen::Vector3d&
   return BodyPlace{pose_of_body->inverse() * point_m, pose_of_body->linear().transpose() * direction.normalized()};
 }
 
-// Peak pressure at 1 m of the click of a body that the impact accelerates as a whole (acceleration noise;
-// Chadwick, Zheng, James, "Precomputed acceleration noise", SIGGRAPH 2012): an oscillating ball whose velocity
-// changes by impulse / mass within the contact time.
+// Peak pressure at 1 m of the click of a body that the impact accelerates as a whole (Chadwick, Zheng, James, "Precomputed
+// acceleration noise", SIGGRAPH 2012). A blow shorter than two samples has its steepest part above half the sample rate.
 double Impacts::click_Pa(const BodySound& s, double impulse_N_s, double length_s) const {
   if (!s.moves) return 0;
-  return kAirDensity_kg_m3 * kSoundSpeed_m_s * impulse_N_s / s.mass_kg * radiation_m(1 / length_s, s.radius_m);
+  return acceleration_peak_Pa(impulse_N_s / s.mass_kg, std::max(length_s, 2 / rate_Hz_), s.radius_m);
 }
 
 // Hard bodies collide repeatedly in the first 15 ms, at the times of their first four modes; the model of van den

@@ -248,12 +248,12 @@ Scrape Sliding::scrape(const Candidate& k, sync::SimTime t, sync::HostTime at, d
     if (side.known)
       sliding_slope_squared += static_cast<double>(side.slide_vector.squaredNorm()) * mean_square_slope({side.roughness.height_m, 0});
   }
-  // Full scale per N: the reference over these two bodies is as loud as a blow of the expected pressure; other
-  // contacts scale by their force. Friction is that of the surfaces without their maps, which the callback reads
+  // Full scale per N: the reference over these two bodies is as loud as a blow of friction_level times the expected
+  // pressure; other contacts scale by their force. Friction is that of the surfaces without their maps, which the callback reads
   // along the path.
   const auto scale = [&](double force_N, double slope, double Pa2_N2) {
     const double expected = std::max(kHearingThreshold_Pa, kCrest * force_N * slope * std::sqrt(Pa2_N2));
-    return settings_.gain * played_level(expected, settings_) / expected / rate_Hz_;
+    return settings_.gain * played_level(settings_.friction_level * expected, settings_) / expected / rate_Hz_;
   };
   if (k.slide > 0)
     s.slide = static_cast<float>(k.slide *

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
+
+#include "audio_node/modal/mode_range.h"
 
 namespace tactus::audio {
 namespace {
@@ -24,20 +25,6 @@ std::vector<NaturalFrequency> ascending(ModeRange range, int first, F frequency)
     out.push_back({f, n + first});
   }
   return out;
-}
-
-std::vector<NaturalFrequency> sorted(std::vector<NaturalFrequency> all, ModeRange range) {
-  std::erase_if(all, [&](const NaturalFrequency& m) { return !(m.frequency_Hz > 0 && m.frequency_Hz < range.below_Hz); });
-  std::stable_sort(all.begin(), all.end(),
-                   [](const NaturalFrequency& a, const NaturalFrequency& b) { return a.frequency_Hz < b.frequency_Hz; });
-  if (all.size() > static_cast<std::size_t>(range.max_modes)) all.resize(static_cast<std::size_t>(range.max_modes));
-  return all;
-}
-
-// sqrt(D / (rho h)), m^2/s.
-double plate_constant(const Elastic& m, double thickness_m) {
-  return thickness_m *
-         std::sqrt(m.youngs_modulus_Pa / (12 * m.density_kg_m3 * (1 - m.poissons_ratio * m.poissons_ratio)));
 }
 
 // Warburton's G, H, J of a free-free beam function with n nodes (0: translation, 1: rotation).
@@ -65,24 +52,8 @@ std::vector<NaturalFrequency> plate_modes(ModeRange range, int first, F frequenc
     }
     if (m > 1 && frequency(m, first) >= range.below_Hz) break;
   }
-  return sorted(std::move(all), range);
+  return in_range(std::move(all), range);
 }
-
-// Modes of a free disc, nu = 0.33 (Leissa, table 2.5).
-struct DiscMode {
-  double lambda2;
-  int diameters, circles;
-};
-constexpr std::array<DiscMode, 10> kDisc{{{5.253, 2, 0},
-                                        {9.084, 0, 1},
-                                        {12.23, 3, 0},
-                                        {20.52, 1, 1},
-                                        {21.6, 4, 0},
-                                        {33.1, 5, 0},
-                                        {35.25, 2, 1},
-                                        {38.55, 0, 2},
-                                        {52.91, 3, 1},
-                                        {59.86, 1, 2}}};
 
 }  // namespace
 
@@ -111,9 +82,17 @@ std::vector<NaturalFrequency> free_bar_harmonics(double speed_m_s, double length
   return ascending(range, 1, [&](int n) { return (n + 1) * speed_m_s / (2 * length_m); });
 }
 
+double thick_plate_Hz(const Elastic& m, double thickness_m, double k_1_m) {
+  const double nu = m.poissons_ratio, r2 = thickness_m * thickness_m / 12, kr2 = k_1_m * k_1_m * r2;
+  const double plate2 = m.youngs_modulus_Pa / (m.density_kg_m3 * (1 - nu * nu));       // squared speed of stretching of a plate
+  const double ratio = 2 * (1 + nu) / (1 - nu * nu) * 6 / 5;                           // to that of shear, kappa G / rho
+  const double b = 1 + kr2 * (1 + ratio);
+  return k_1_m * std::sqrt(2 * plate2 * kr2 / (b + std::sqrt(b * b - 4 * ratio * kr2 * kr2))) / (2 * pi);
+}
+
 std::vector<NaturalFrequency> supported_plate(const Elastic& m, double a_m, double b_m, double thickness_m, ModeRange range) {
-  const double c = pi / 2 * plate_constant(m, thickness_m);
-  return plate_modes(range, 1, [&](int i, int k) { return c * (i * i / (a_m * a_m) + k * k / (b_m * b_m)); });
+  return plate_modes(range, 1,
+                     [&](int i, int k) { return thick_plate_Hz(m, thickness_m, pi * std::hypot(i / a_m, k / b_m)); });
 }
 
 std::vector<NaturalFrequency> free_plate(const Elastic& m, double a_m, double b_m, double thickness_m, ModeRange range) {
@@ -123,31 +102,8 @@ std::vector<NaturalFrequency> free_plate(const Elastic& m, double a_m, double b_
     const double lambda2 = pi * pi *
                            std::sqrt(std::pow(x.g, 4) + std::pow(y.g * ratio, 4) +
                                      2 * ratio * ratio * (nu * x.h * y.h + (1 - nu) * x.j * y.j));
-    return lambda2 / (2 * pi * a_m * a_m) * plate_constant(m, thickness_m);
+    return thick_plate_Hz(m, thickness_m, std::sqrt(lambda2) / a_m);
   });
-}
-
-std::vector<NaturalFrequency> free_disc(const Elastic& m, double radius_m, double thickness_m, ModeRange range) {
-  std::vector<NaturalFrequency> all;
-  for (const DiscMode& l : kDisc)
-    all.push_back(
-        {l.lambda2 / (2 * pi * radius_m * radius_m) * plate_constant(m, thickness_m), l.diameters, l.circles});
-  return sorted(std::move(all), range);
-}
-
-double free_disc_lambda2(int diameters, int circles) {
-  const auto found = std::find_if(kDisc.begin(), kDisc.end(), [&](const DiscMode& l) {
-    return l.diameters == diameters && l.circles == circles;
-  });
-  if (found == kDisc.end()) throw std::logic_error("the list has no such mode of a disc");
-  return found->lambda2;
-}
-
-std::vector<NaturalFrequency> solid_ball(const Elastic& m, double radius_m, ModeRange range) {
-  constexpr std::array kShearWaveNumbers{2.639, 3.424, 3.916, 4.440, 4.865, 5.010, 6.033, 6.455, 6.772, 7.023};
-  std::vector<NaturalFrequency> all;
-  for (const double k : kShearWaveNumbers) all.push_back({k * shear_speed_m_s(m) / (2 * pi * radius_m)});
-  return sorted(std::move(all), range);
 }
 
 std::vector<NaturalFrequency> spherical_shell(const Elastic& m, double radius_m, ModeRange range) {

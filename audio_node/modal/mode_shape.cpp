@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "audio_node/modal/disc.h"
 #include "audio_node/modal/modal.h"
 
 namespace tactus::audio {
@@ -43,12 +44,11 @@ BeamValue supported_profile(int i, double coordinate_m, double length_m, bool pa
   return {sqrt2 * std::sin(k * x), sqrt2 * k * std::cos(k * x)};
 }
 
-// Radial function of a mode with n nodal diameters of a free disc: J_n(kr) + c I_n(kr), without bending moment at
-// the edge (Leissa, Vibration of Plates, NASA SP-160, 1969, eq. 1.18 and section 2.1.3).
+// Radial function of a mode of a free disc: J_n(kr) + c I_n(kr).
 class DiscProfile {
  public:
-  DiscProfile(int n, double lambda) : n_(n), lambda_(lambda) {
-    c_ = -moment(lambda, false) / moment(lambda, true);
+  DiscProfile(int diameters, double lambda, double poissons_ratio)
+      : functions_(diameters, poissons_ratio), lambda_(lambda), c_(functions_.modified_share(lambda)) {
     // Mean square over the disc, of the two degenerate modes together: 2 integral R^2 x dx, and half of it for
     // each where it has diameters.
     constexpr int kSteps = 400;  // Simpson's rule: error below 1e-6 for the listed modes
@@ -57,34 +57,20 @@ class DiscProfile {
       const double x = static_cast<double>(s) / kSteps, weight = s == 0 || s == kSteps ? 1 : s % 2 ? 4 : 2;
       sum += weight * raw(x) * raw(x) * x;
     }
-    const double mean_square = 2 * sum / (3 * kSteps) / (n > 0 ? 2 : 1);
+    const double mean_square = 2 * sum / (3 * kSteps) / (diameters > 0 ? 2 : 1);
     scale_ = 1 / std::sqrt(mean_square);
   }
   // x: distance from the centre, 0 .. 1 of the radius. The slope is per radius.
   double value(double x) const { return scale_ * raw(x); }
   double slope(double x) const {
-    return scale_ * lambda_ * (derivative(lambda_ * x, false) + c_ * derivative(lambda_ * x, true));
+    return scale_ * lambda_ * (functions_.slope(lambda_ * x, false) + c_ * functions_.slope(lambda_ * x, true));
   }
 
  private:
-  static double bessel(int n, double y, bool modified) {
-    const double m = std::abs(n);
-    return modified ? std::cyl_bessel_i(m, y) : (n < 0 && n % 2 ? -1 : 1) * std::cyl_bessel_j(m, y);
-  }
-  double derivative(double y, bool modified) const {
-    return (bessel(n_ - 1, y, modified) + (modified ? 1 : -1) * bessel(n_ + 1, y, modified)) / 2;
-  }
-  // w'' + nu (w' - n^2 w) at the edge, by Bessel's equation: w'' = -w'/y -+ (1 -+ n^2/y^2) w.
-  double moment(double y, bool modified) const {
-    constexpr double kPoisson = 0.33;
-    const double w = bessel(n_, y, modified), d = derivative(y, modified), n2 = n_ * n_;
-    const double dd = -d / y + (n2 / (y * y) + (modified ? 1 : -1)) * w;
-    return y * y * dd + kPoisson * (y * d - n2 * w);
-  }
-  double raw(double x) const { return bessel(n_, lambda_ * x, false) + c_ * bessel(n_, lambda_ * x, true); }
+  double raw(double x) const { return functions_.value(lambda_ * x, false) + c_ * functions_.value(lambda_ * x, true); }
 
-  int n_;
-  double lambda_, c_ = 0, scale_ = 1;
+  DiscFunctions functions_;
+  double lambda_, c_, scale_ = 1;
 };
 
 }  // namespace
@@ -137,9 +123,9 @@ ModeShape free_plate_shape(int i, int k, double a_m, double b_m) {
                      [=](double y) { return free_profile(k, y, b_m); });
 }
 
-ModeShape free_disc_shape(int diameters, int circles, double radius_m) {
-  return [profile = DiscProfile(diameters, std::sqrt(free_disc_lambda2(diameters, circles))), radius_m](
-             const Vector3d& p, const Vector3d& n) {
+ModeShape free_disc_shape(int diameters, int circles, double radius_m, double poissons_ratio) {
+  const double lambda = free_disc_lambda(diameters, circles, poissons_ratio);
+  return [profile = DiscProfile(diameters, lambda, poissons_ratio), radius_m](const Vector3d& p, const Vector3d& n) {
     const double r = p.head<2>().norm(), x = std::min(r / radius_m, 1.0);
     const double outward = r > 1e-9 ? p.head<2>().dot(n.head<2>()) / r : 0;
     return n.z() * profile.value(x) - p.z() * outward * profile.slope(x) / radius_m;

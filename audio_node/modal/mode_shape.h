@@ -36,8 +36,8 @@ struct Patch {
 };
 ModeShape supported_plate_shape(int i, int k, double a_m, double b_m, const Patch& patch);
 ModeShape free_plate_shape(int i, int k, double a_m, double b_m);
-// Mode of a disc, by nodal diameters and circles, of those that free_disc() lists, for nu = 0.33. The force
-// determines the orientation of its nodal diameters, so only the distance from the centre matters.
-ModeShape free_disc_shape(int diameters, int circles, double radius_m);
+// Mode of a thin disc, by nodal diameters and circles, of those that free_disc() lists. The force determines the
+// orientation of its nodal diameters, so only the distance from the centre matters.
+ModeShape free_disc_shape(int diameters, int circles, double radius_m, double poissons_ratio);
 
 }  // namespace tactus::audio

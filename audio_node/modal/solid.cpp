@@ -13,7 +13,8 @@ using std::numbers::pi;
 // A ball below this share of the mass of a solid one counts as a shell.
 constexpr double kHollowBelow = 0.6;  // design
 // Aspect ratio: longer bodies are bars; of the others, those that are wider than thick by it are plates.
-constexpr double kSlender = 3;  // thin-bar and thin-plate theory err by 10 % there (Graff 1975, section 3.4)
+// With shear and rotary inertia bars err by up to 10 % there, plates by 20 % (modal.h).
+constexpr double kSlender = 3;
 // Modes that move mostly along the surface (torsion, stretching) radiate less.
 constexpr double kInPlaneGain = 0.3;  // design
 
@@ -74,7 +75,7 @@ Solid solid_cylinder(const Elastic& m, double radius, double length, ModeRange r
   if (2 * radius >= kSlender * length) {
     solid.radius_m = radius / 2;
     const std::vector<NaturalFrequency> modes = free_disc(m, radius, length, range);
-    append(solid.modes, modes, 1, [&](const NaturalFrequency& n) { return free_disc_shape(n.i, n.k, radius); });
+    append(solid.modes, modes, 1, [&](const NaturalFrequency& n) { return free_disc_shape(n.i, n.k, radius, m.poissons_ratio); });
     return solid;
   }
   solid.radius_m = std::cbrt(solid.volume_m3 * 3 / (4 * pi));

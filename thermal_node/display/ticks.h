@@ -26,8 +26,8 @@ struct Tick {
 
 class Ticks {
  public:
-  // Contacts more recent than this may still be in transit. Heat can wait for them (Fowler et al. 1988: cold takes
-  // 0.4 s to the brain), so the interval ends this much before now and no part of a touch falls between two ticks.
+  // Contacts more recent than this may still be in transit. Heat can wait for them (at 2.1 m/s, Fowler et al.
+  // 1988, cold takes 0.4 s through 0.8 m of arm), so the interval ends this much before now and no part of a touch falls between two ticks.
   static constexpr sync::Nanoseconds kSettle{5'000'000};
   // A tick integrates at most this much simulated time, also after a long stop of the process.
   static constexpr sync::Nanoseconds kMaxInterval{2'000'000'000};

@@ -15,8 +15,9 @@ double contact_conductance_W_m2K(double object_conductivity_W_mK);
 struct Press {
   double reference_force_N = 1;     // force at which contact_conductance_W_m2K holds
   double reference_area_m2 = 1e-4;  // of the whole pad
-  // Cooper, Mikic and Yovanovich 1969: h ~ pressure^0.95 for solids with rough surfaces; its use for skin is a
-  // design assumption. Ho and Jones 2008 state that pressure changes the resistance, but not by which law.
+  // h ~ pressure^0.95 for solids with rough surfaces (Yovanovich 1982, Thermal contact correlations, AIAA; Cooper, Mikic
+  // and Yovanovich 1969 have 0.985; both unverified). Its use for skin is a design assumption: Ho and Jones 2008 state
+  // that pressure changes the resistance, but not by which law.
   double pressure_exponent = 0.95;
 };
 

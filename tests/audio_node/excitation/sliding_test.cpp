@@ -114,8 +114,7 @@ TEST_CASE("A scrape has its place on both bodies, its velocity and its strength"
 }
 
 TEST_CASE("The strength of sliding is the root of the friction power") {
-  // Strength is proportional to the root of friction, force and speed (FoleyAutomatic, section 4.2), and level to its power
-  // 0.6.
+  // Strength is proportional to the root of friction, force and speed (FoleyAutomatic, section 4.2).
   CHECK(sliding_strength(0.5, 2, 0.1) == Approx(std::sqrt(0.1)));
   const double force_N = GENERATE(0.5, 8.0), speed_m_s = GENERATE(0.05, 0.4);
   const auto scrape_at = [&](double force, double speed) {
@@ -127,15 +126,17 @@ TEST_CASE("The strength of sliding is the root of the friction power") {
   CHECK(other / one == Approx(std::sqrt(force_N * speed_m_s / 0.2)).epsilon(1e-4));
 }
 
-TEST_CASE("The level of the reference stroke follows its expected pressure to the power 0.6") {
-  // Twice the force per slope, and so twice the expected pressure: the law of level takes a power of 0.6.
-  const auto strength_at = [](double force_N) {
+TEST_CASE("The level of the reference stroke is its expected pressure, in proportion or compressed by loudness_exponent") {
+  const double exponent = GENERATE(1.0, 0.6);
+  const auto strength_at = [&](double force_N, double friction_level) {
     Settings settings;
-    settings.scrape_force_N = force_N;
+    settings.scrape_force_N = force_N, settings.loudness_exponent = exponent, settings.friction_level = friction_level;
     SlidingBench h(board(true), wavy_surfaces(), settings);
     return static_cast<double>(h.step(sliding({0, 0.1, 0}, 1, {0.005, 0.003, 0})).at(0).slide);
   };
-  CHECK(strength_at(80) / strength_at(40) == Approx(std::pow(2, 0.6)).epsilon(1e-4));
+  // Twice the force per slope, and so twice the expected pressure; twice the level of friction is the same.
+  CHECK(strength_at(80, 16) / strength_at(40, 16) == Approx(std::pow(2, exponent)).epsilon(1e-4));
+  CHECK(strength_at(40, 16) / strength_at(40, 8) == Approx(std::pow(2, exponent)).epsilon(1e-4));
 }
 
 TEST_CASE("A contact that rests under load is silent although it jitters, and sliding is audible at once") {

@@ -22,16 +22,17 @@ TEST_CASE("Every published threshold has a pair, a time, a meaning, a situation 
 TEST_CASE("Thresholds depend on the order: touch before vision has a lower one than vision before touch") {
   CHECK(thresholds_of("haptic", "visual")->least == 15 * kMs);
   CHECK(thresholds_of("visual", "haptic")->least == 45 * kMs);
+  CHECK(thresholds_of("visual", "audio")->least == 45 * kMs);
   CHECK(thresholds_of("visual", "audio")->largest == 185 * kMs);
   CHECK_FALSE(thresholds_of("haptic", "thermal"));
 }
 
 TEST_CASE("Asynchronies beyond the lowest and beyond all thresholds of their direction are counted") {
   SoaHistogram soa;
-  for (const int ms : {0, 10, 20, 60, 95, -10, -70, -130, -190}) soa.add(ms * kMs, Nanoseconds(0));
-  // audio, then visual: 15 to 90 ms; visual, then audio: 60 to 185 ms
+  for (const int ms : {0, 10, 20, 60, 95, -10, -50, -70, -130, -190}) soa.add(ms * kMs, Nanoseconds(0));
+  // audio, then visual: 15 to 90 ms; visual, then audio: 45 to 185 ms
   const BeyondThresholds beyond = count_beyond_thresholds("audio", "visual", soa);
-  CHECK(beyond.least == 3 + 3);
+  CHECK(beyond.least == 3 + 4);
   CHECK(beyond.all == 1 + 1);
   CHECK(count_beyond_thresholds("haptic", "thermal", soa).least == -1);
   // haptic, then audio: 24 to 100 ms; nothing is published for sound before touch

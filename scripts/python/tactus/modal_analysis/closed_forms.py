@@ -52,11 +52,19 @@ def free_bar_node(root):
 
 
 def supported_plate_Hz(material, a_m, b_m, thickness_m, below_Hz):
-    """{(m, n): frequency}: (pi / 2) sqrt(D / (rho h)) (m^2 / a^2 + n^2 / b^2), D = E h^3 / (12 (1 - nu^2)) (Leissa, Vibration of Plates,
-    NASA SP-160, 1969, eq. 4.20)."""
-    rigidity = material["youngs_modulus_Pa"] * thickness_m ** 3 / (12 * (1 - material["poissons_ratio"] ** 2))
-    c = math.pi / 2 * math.sqrt(rigidity / (material["density_kg_m3"] * thickness_m))
-    every = {(m, n): c * ((m / a_m) ** 2 + (n / b_m) ** 2) for m in range(1, 60) for n in range(1, 60)}
+    """{(m, n): frequency}: the bending wave of wavenumber k = pi sqrt(m^2 / a^2 + n^2 / b^2) (Leissa, Vibration of Plates, NASA SP-160,
+    1969, eq. 4.20), with shear and rotary inertia (Mindlin, J. Appl. Mech. 18, 1951, p. 31), kappa = 5/6: the lower root w^2 of
+    (k^2 - w^2 / c_s^2) (D k^2 - rho h^3 w^2 / 12) = rho h w^2, c_s^2 = kappa G / rho."""
+    rho, nu, h = material["density_kg_m3"], material["poissons_ratio"], thickness_m
+    rigidity = material["youngs_modulus_Pa"] * h ** 3 / (12 * (1 - nu ** 2))
+    shear = 5 / 6 * material["youngs_modulus_Pa"] / (2 * (1 + nu)) / rho
+
+    def frequency(m, n):
+        k2 = math.pi ** 2 * ((m / a_m) ** 2 + (n / b_m) ** 2)
+        a, b, c = rho * h ** 3 / (12 * shear), rho * h + k2 * (rho * h ** 3 / 12 + rigidity / shear), rigidity * k2 ** 2
+        return math.sqrt(2 * c / (b + math.sqrt(b * b - 4 * a * c))) / (2 * math.pi)
+
+    every = {(m, n): frequency(m, n) for m in range(1, 60) for n in range(1, 60)}
     return {k: f for k, f in sorted(every.items(), key=lambda item: item[1]) if f < below_Hz}
 
 
