@@ -34,8 +34,7 @@ OpenCard Offline::open_card() {
 }
 
 std::string Offline::result(double rate_Hz, std::int64_t hits, std::int64_t dropped, sync::HostTime clock) {
-  if (!card_ || !card_->start())
-    throw std::runtime_error("the log has no scene; give a log that scripts/run wrote from the start of the run");
+  if (!card_ || !card_->start()) throw std::runtime_error(run_.no_scene());
   const double sound_s = static_cast<double>(card_->frames()) / rate_Hz;
   const std::string rest = run_.finish(sound_s, clock);
   card_->finish();

@@ -16,6 +16,7 @@
 #include "sync/time/phases.h"
 #include "sync/node/realtime.h"
 #include "sync/assets/scene_pictures.h"
+#include "sync/text/error_text.h"
 #include "sync/virtual_time/virtual_time.h"
 
 namespace tactus::audio {
@@ -161,7 +162,7 @@ void NodeRenderer::take_surfaces() {
   try {
     surfaces = loading_surfaces_->take();
   } catch (const std::exception& e) {
-    host().print_status(std::string("cannot read the maps of the scene (") + e.what() + "); scraping contacts sound without them");
+    host().print_status(std::string("cannot read the maps of the scene (") + sync::error_text(e) + "); scraping contacts sound without them");
   }
   loading_surfaces_.reset();
   output_.set_surfaces(surfaces);

@@ -12,6 +12,7 @@
 #include "sync/time/phases.h"
 #include "sync/node/realtime.h"
 #include "sync/assets/scene_pictures.h"
+#include "sync/text/error_text.h"
 
 namespace tactus::haptic {
 
@@ -97,8 +98,9 @@ void NodeRenderer::start_session() {
     session_.emplace(*scene_, config_, device_task_->take(), host().bus().clocks(), safety_);
     if (maps_) session_->set_maps(maps_);
   } catch (const std::exception& e) {
-    host().print_status(e.what());
-    host().node().set_state(node_health_t::OUTPUT_LOST, e.what());
+    const std::string reason = sync::error_text(e);
+    host().print_status(reason);
+    host().node().set_state(node_health_t::OUTPUT_LOST, reason);
   }
   device_task_.reset();
 }

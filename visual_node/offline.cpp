@@ -75,8 +75,7 @@ void Offline::add(const std::function<void(std::span<std::uint8_t>)>& read) {
 }
 
 std::string Offline::result(std::int64_t flashed, std::int64_t dropped, sync::HostTime clock) {
-  if (!video_)
-    throw std::runtime_error("the log has no scene; give a log that scripts/run wrote from the start of the run");
+  if (!video_) throw std::runtime_error(run_.no_scene());
   const double film_s = static_cast<double>(video_->frames()) / rate_Hz_;
   const std::string rest = run_.finish(film_s, clock);
   video_->finish();

@@ -38,6 +38,8 @@ class Card {
   virtual const std::string& card() const = 0;    // name for messages
   virtual const std::string& medium() const = 0;  // name of the WAV file
   virtual std::optional<MediaPair> next_pair() = 0;
+  // Missing part of the WAV file, with its reason, as of the last call of next_pair(); empty: none.
+  virtual std::string recording_fault() const { return ""; }
 };
 
 // Throws std::runtime_error with one sentence.

@@ -41,7 +41,7 @@ FileCard::FileCard(const StreamOptions& options, const std::string& wav, Render 
   SF_INFO info{};
   info.samplerate = options.rate_Hz;
   info.channels = options.channels;
-  info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+  info.format = kFloatWav;
   try {
     file_.reset(open_for_writing(part_, info, "--wav"));
   } catch (...) {
@@ -87,7 +87,7 @@ void FileCard::play_until(sync::HostTime now) {
     // setting.
     render_(block_.data(), period_frames_, {first, sync::Nanoseconds(0), sync::Nanoseconds(0)});
     if (sf_writef_float(file_.get(), block_.data(), period_frames_) != period_frames_)
-      throw std::runtime_error("cannot continue to write " + wav_ + " (" + sf_strerror(file_.get()) +
+      throw std::runtime_error("cannot continue to write " + wav_ + " (" + write_error(file_.get()) +
                                "); free some disk space or choose another --wav");
     ++blocks_;
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "audio_node/devices/file_card.h"
+#include "sync/text/error_text.h"
 
 namespace tactus::audio {
 namespace {
@@ -19,7 +20,7 @@ class NamedFileCard : public FileCard {
     try {
       finish();
     } catch (const std::exception& e) {
-      std::cerr << "audio_node: " << e.what() << std::endl;
+      std::cerr << "audio_node: " << sync::error_text(e) << std::endl;
     }
   }
 

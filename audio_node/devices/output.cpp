@@ -8,6 +8,7 @@
 #include "audio_node/signal/sound_dose.h"
 #include "audio_node/spatial/space_of.h"
 #include "sync/clocks/pacing.h"
+#include "sync/text/error_text.h"
 
 namespace tactus::audio {
 namespace {
@@ -131,7 +132,7 @@ void Output::finish_opening(sync::HostTime now) {
     // The scene may have selected another card meanwhile.
     if (!same_stream(opened_with_, settings_)) close();
   } catch (const std::exception& e) {
-    error_text_ = e.what();
+    error_text_ = sync::error_text(e);
     retry_at_ = now + sync::from_seconds(settings_.retry_after_s);
   }
   opening_.reset();
@@ -199,7 +200,7 @@ std::optional<presentation_t> Output::next_report() {
 }
 
 std::optional<std::string> Output::take_status_change() {
-  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + latency_warning() : error_text_;
+  std::string now = stream_ ? "plays on " + stream_->card() + " into " + medium_ + recording_fault() + latency_warning() : error_text_;
   if (now == reported_status_) return std::nullopt;
   return reported_status_ = std::move(now);
 }
@@ -208,7 +209,12 @@ std::string Output::status_text() const {
   if (!stream_) return (error_text_.empty() ? "sound card not opened yet" : error_text_) + loss_text();
   return stream_->card() + " at " + std::to_string(static_cast<int>(settings_.sample_rate_Hz)) + " Hz, " +
          std::to_string(settings_.period_frames) + " frames, " + std::to_string(stream_->underflows()) +
-         " underflows" + cost_text() + exposure_text() + loss_text() + latency_warning();
+         " underflows" + cost_text() + exposure_text() + loss_text() + recording_fault() + latency_warning();
+}
+
+std::string Output::recording_fault() const {
+  const std::string fault = stream_->recording_fault();
+  return fault.empty() ? "" : "; " + fault;
 }
 
 std::string Output::latency_warning() const {

@@ -87,6 +87,7 @@ class Output {
   std::string exposure_text() const;
   // Text about a card that is too slow for its delay; otherwise empty.
   std::string latency_warning() const;
+  std::string recording_fault() const;  // only with a stream
   // Text about lost updates and reports; empty if there are none.
   std::string loss_text() const;
   // Step of the quality ladder in use.

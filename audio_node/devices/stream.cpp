@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <thread>
@@ -95,6 +97,13 @@ std::string free_wav_name(const std::string& folder) {
     const std::string name = n == 1 ? "audio.wav" : "audio." + std::to_string(n) + ".wav";
     if (!std::filesystem::exists(std::filesystem::path(folder) / name)) return name;
   }
+}
+
+std::string recording_fault_of(const MediaPair& pair, const std::string& medium, int rate_Hz) {
+  char time[32];
+  std::snprintf(time, sizeof time, "%.1f s", static_cast<double>(pair.index) / rate_Hz);
+  if (pair.reason == MediaPair::kSilent) return "the disk is too slow for the sound: " + std::string(time) + " of " + medium + " are silent";
+  return "the disk refuses the sound (" + std::string(std::strerror(pair.underflows)) + "): " + medium + " ends after " + time;
 }
 
 Stream::Stream(const StreamOptions& options, Render render)
@@ -185,8 +194,11 @@ bool Stream::alive(sync::HostTime now) const {
 
 std::optional<MediaPair> Stream::next_pair() {
   MediaPair pair;
-  if (::read(pairs_[0], &pair, sizeof pair) != static_cast<ssize_t>(sizeof pair)) return std::nullopt;
-  return pair;
+  while (::read(pairs_[0], &pair, sizeof pair) == static_cast<ssize_t>(sizeof pair)) {
+    if (pair.reason != MediaPair::kRefused && pair.reason != MediaPair::kSilent) return pair;
+    recording_fault_ = recording_fault_of(pair, medium_, rate_Hz_);
+  }
+  return std::nullopt;
 }
 
 int Stream::on_block(const void*, void* out, unsigned long frames, const PaStreamCallbackTimeInfo* time,

@@ -32,6 +32,7 @@ class Stream : public Card {
   const std::string& card() const override { return card_; }
   const std::string& medium() const override { return medium_; }
   std::optional<MediaPair> next_pair() override;
+  std::string recording_fault() const override { return recording_fault_; }
 
  private:
   struct PortAudio;  // keeps PortAudio initialised while it exists
@@ -46,7 +47,7 @@ class Stream : public Card {
   Render render_;
   int rate_Hz_, channels_;
   int fifo_priority_;
-  std::string card_, medium_;
+  std::string card_, medium_, recording_fault_;
   int pairs_[2] = {-1, -1};
   std::unique_ptr<VirtualCard> virtual_card_;
   std::unique_ptr<PortAudio> portaudio_;
@@ -68,5 +69,8 @@ class Stream : public Card {
 
 // "audio.wav", or "audio.2.wav" and so on where that exists: a restarted node overwrites nothing.
 std::string free_wav_name(const std::string& folder);
+
+// Missing part of a file, from a pair with the reason kRefused or kSilent: "the disk refuses the sound (File too large): audio.wav ends after 1.0 s".
+std::string recording_fault_of(const MediaPair& pair, const std::string& medium, int rate_Hz);
 
 }  // namespace tactus::audio

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "audio_node/mixer/sound_writer.h"
 
@@ -27,7 +29,7 @@ Capture::Capture(const std::string& path, int rate_Hz, int channels, int pairs_f
   SF_INFO info{};
   info.samplerate = rate_Hz;
   info.channels = channels;
-  info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+  info.format = kFloatWav;
   file_ = open_for_writing(path, info, "--out");
   // The peak chunk holds the time of day, which would make two equal runs differ.
   sf_command(file_, SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
@@ -45,7 +47,7 @@ void Capture::append(const float* interleaved, std::size_t frames) {
   frames_ += static_cast<std::int64_t>(frames);
   if (write_pending_silence() && samples_.push(interleaved, frames * static_cast<std::size_t>(channels_))) return;
   pending_silence_ += static_cast<std::int64_t>(frames);
-  lost_.fetch_add(static_cast<std::int64_t>(frames), std::memory_order_relaxed);
+  late_.fetch_add(static_cast<std::int64_t>(frames), std::memory_order_relaxed);
 }
 
 // Replaces lost frames by silence. True when none remain.
@@ -77,12 +79,31 @@ void Capture::write_all() {
       buffer.size() / static_cast<std::size_t>(channels_) * static_cast<std::size_t>(channels_);
   bool wrote = false;
   while (const std::size_t count = samples_.pop(buffer.data(), whole)) {
-    sf_write_float(file_, buffer.data(), static_cast<sf_count_t>(count));
+    write(buffer.data(), count);
     wrote = true;
   }
+  if (const std::int64_t late = late_.load(std::memory_order_relaxed); late != reported_late_) {
+    send({late, 0, MediaPair::kSilent, 0});
+    reported_late_ = late;
+  }
   if (wrote) sf_command(file_, SFC_UPDATE_HEADER_NOW, nullptr, 0);
-  for (MediaPair pair; pairs_.pop(pair);)
-    if (pairs_fd_ >= 0 && ::write(pairs_fd_, &pair, sizeof pair) != static_cast<ssize_t>(sizeof pair)) continue;
+  for (MediaPair pair; pairs_.pop(pair);) send(pair);
+}
+
+// The file ends where the disk refuses samples: later ones would have other indices in it.
+void Capture::write(const float* samples, std::size_t count) {
+  const auto wanted = static_cast<sf_count_t>(count);
+  errno = 0;
+  const sf_count_t written = ends_ ? 0 : sf_write_float(file_, samples, wanted);
+  const int reason = errno != 0 ? errno : ENOSPC;
+  written_ += written / channels_;
+  if (written == wanted) return;
+  refused_.fetch_add((wanted - written) / channels_, std::memory_order_relaxed);
+  if (!std::exchange(ends_, true)) send({written_, 0, MediaPair::kRefused, reason});
+}
+
+void Capture::send(const MediaPair& pair) const {
+  if (pairs_fd_ >= 0 && ::write(pairs_fd_, &pair, sizeof pair) != static_cast<ssize_t>(sizeof pair)) return;
 }
 
 }  // namespace tactus::audio

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sync/node/realtime.h"
+#include "sync/text/error_text.h"
 
 namespace tactus::audio {
 namespace {
@@ -55,7 +56,7 @@ void Library::receive_database(std::vector<Shared>& released) {
       set_next(std::move(database));
     }
   } catch (const std::exception& e) {
-    messages_.push_back("cannot read the recordings in " + reading_->folder + " (" + e.what() +
+    messages_.push_back("cannot read the recordings in " + reading_->folder + " (" + sync::error_text(e) +
                     "); contact sounds are computed instead");
   }
   opening_.reset();

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace tactus::audio {
 
@@ -17,6 +18,14 @@ SNDFILE* open_for_writing(const std::string& path, SF_INFO info, const std::stri
     reason = sf_strerror(nullptr);
   }
   throw std::runtime_error("cannot write " + path + " (" + reason + "); choose another " + option);
+}
+
+std::string write_error(SNDFILE* file) {
+  constexpr std::string_view kSystem = "System error : ";
+  std::string reason = sf_strerror(file);
+  if (reason.starts_with(kSystem)) reason.erase(0, kSystem.size());
+  if (reason.ends_with(".")) reason.pop_back();
+  return reason;
 }
 
 }  // namespace tactus::audio

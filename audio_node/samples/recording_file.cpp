@@ -54,6 +54,16 @@ float peak_of(const std::vector<float>& x) {
   return peak;
 }
 
+// error: a code of libsndfile.
+const char* unreadable_reason(int error) {
+  switch (error) {
+    case SF_ERR_MALFORMED_FILE: return "its header is damaged";
+    case SF_ERR_UNSUPPORTED_ENCODING: return "its samples are encoded in a way that is not supported";
+    case SF_ERR_SYSTEM: return "the system refuses to read it";
+    default: return "it is empty, cut off, or no sound";
+  }
+}
+
 }  // namespace
 
 std::vector<float> cut_blow(std::vector<float> x, double rate_Hz) {
@@ -95,8 +105,7 @@ std::optional<Recording> read_recording(const std::string& path, Interaction int
   } catch (const std::runtime_error& e) {
     return reject("cannot be read as sound (" + std::string(e.what()) + "); give a WAV or FLAC");
   }
-  if (!file)
-    return reject("cannot be read as sound (" + std::string(sf_strerror(nullptr)) + "); give a WAV or FLAC");
+  if (!file) return reject(std::string("cannot be read as sound (") + unreadable_reason(sf_error(nullptr)) + "); give a WAV or FLAC");
   // libsndfile reads thirty formats and ignores the name of the file; fewer parsers have fewer errors.
   const int format = info.format & SF_FORMAT_TYPEMASK;
   if (format != SF_FORMAT_WAV && format != SF_FORMAT_WAVEX && format != SF_FORMAT_RF64 && format != SF_FORMAT_FLAC)

@@ -18,7 +18,7 @@ struct SoundFault {
   bool unusable = true;  // it is not played; false: it is played with reduced quality
 };
 
-// Accepts sample rates of 8 to 192 kHz and one or two channels, which are summed to one. Appends its faults;
+// Accepts sample rates of 8 to 192 kHz and one or two channels; two become one, their mean. Appends its faults;
 // empty: it cannot be played. May take a second, so do not call it in a loop. Parses the file in this process: nodes use
 // RecordingReader.
 std::optional<Recording> read_recording(const std::string& path, Interaction interaction, double rate_Hz,

@@ -24,6 +24,7 @@
 #include "sim_node/scene/load_sdf.h"
 #include "sim_node/scene/scene_folders.h"
 #include "sync/node/node_options.h"
+#include "sync/text/error_text.h"
 #include "sync/tools/sync_node.h"
 #include "sync/virtual_time/virtual_time.h"
 #include "thermal_node/run.h"
@@ -111,7 +112,7 @@ json play_to_json(const Loaded& loaded, const GameDef& game) try {
   return {{"won", won},       {"time_s", won ? v.time_s : game.limit_s}, {"filled", v.filled},
           {"wrong", v.wrong}, {"peak_force_N", v.peak_force_N},          {"path_m", v.path_m}};
 } catch (const std::exception& e) {
-  return {{"trouble", e.what()}};
+  return {{"trouble", sync::error_text(e)}};
 }
 
 // The last line that a game wrote to stderr, for the reason of its failure.

@@ -9,6 +9,7 @@
 
 #include "sync/degradation/known_modalities.h"
 #include "sync/degradation/profile.h"
+#include "sync/text/xml_reason.h"
 
 namespace tactus::sync {
 namespace {
@@ -174,7 +175,7 @@ Profile parse_profile(const std::string& xml, const std::string& file, const Dec
            "there is a NUL byte here, so this is not text in UTF-8");
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
-    refuse(file, document.ErrorLineNum(), std::string("this is not XML (") + document.ErrorName() + ")");
+    refuse(file, document.ErrorLineNum(), "this is not XML: " + xml_reason(document));
   const Element* root = document.RootElement();
   if (!root || std::string(root->Name()) != "profile")
     refuse(file, root ? root->GetLineNum() : 1, "a profile begins with <profile>");

@@ -22,7 +22,8 @@ void OfflineOptions::add_to(Arguments& app, const std::string& does, const std::
 
 OfflineInput::OfflineInput(const OfflineOptions& options, std::vector<Written> written, double rate_Hz, HostTime clock,
                  Nanoseconds tail)
-    : feed_(options.log, rate_Hz, options.run),
+    : log_(options.log),
+      feed_(options.log, rate_Hz, options.run),
       run_number_(options.run),
       rate_Hz_(rate_Hz),
       as_recorded_(options.as_recorded),
@@ -63,7 +64,7 @@ HostTime OfflineInput::next(Bus& bus) {
 void OfflineInput::require_rate(double rate_Hz) const {
   if (rate_Hz == rate_Hz_) return;
   std::ostringstream text;
-  text << "the scene of the log requires " << rate_Hz << " ticks per second, not " << rate_Hz_
+  text << printable(log_) << ": the scene of the log requires " << rate_Hz << " ticks per second, not " << rate_Hz_
        << "; give --set rate=" << rate_Hz;
   throw std::runtime_error(text.str());
 }
@@ -81,7 +82,7 @@ std::optional<std::string> OfflineInput::progress(HostTime clock) {
 }
 
 std::string OfflineInput::finish(double rendered_s, HostTime clock) {
-  if (!over()) throw std::runtime_error("stopped before the end of the log: no output is kept");
+  if (!over()) throw std::runtime_error(printable(log_) + ": stopped before the end of the log: no output is kept");
   if (presented_) presented_->finish();
   const double took_s = to_seconds(clock - started_);
   std::ostringstream text;
@@ -119,8 +120,7 @@ void OfflineTable::add_row(const std::string& row) {
 
 std::string OfflineTable::result(const std::string& problem, HostTime clock) {
   if (!first_)
-    throw std::runtime_error(problem.empty() ? "the log has no scene; give one that scripts/run wrote from its beginning"
-                                             : problem);
+    throw std::runtime_error(problem.empty() ? run_.no_scene() : run_.refusal(problem));
   const double rendered_s = to_seconds(run_.now() - *first_);
   const std::string rest = run_.finish(rendered_s, clock);
   table_.finish();

@@ -14,6 +14,7 @@
 #include "sync/log/log_feed.h"
 #include "sync/node/node_options.h"
 #include "sync/text/atomic_file.h"
+#include "sync/text/printable.h"
 
 namespace tactus::sync {
 
@@ -44,6 +45,10 @@ class OfflineInput {
   const LogFeed& feed() const { return feed_; }
   // Its number in the log.
   int run_number() const { return run_number_; }
+  // A sentence about the log, with its name.
+  std::string refusal(const std::string& reason) const { return printable(log_) + ": " + reason; }
+  // Of a log that held no scene until its end.
+  std::string no_scene() const { return refusal("the log has no scene; give one that scripts/run wrote from its beginning"); }
   // The next tick of the log.
   HostTime next(Bus& bus);
   // Sets the time of the next tick, instead of one period after the last.
@@ -66,6 +71,7 @@ class OfflineInput {
   std::string finish(double rendered_s, HostTime clock);
 
  private:
+  std::string log_;
   LogFeed feed_;
   int run_number_;
   double rate_Hz_;

@@ -7,6 +7,7 @@
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/spelling_suggestions.h"
+#include "sync/text/xml_reason.h"
 
 namespace tactus::sync {
 namespace {
@@ -112,8 +113,7 @@ RelayRules parse_relay_rules(const std::string& xml, const std::string& file) {
     tinyxml2::XMLDocument document;
     if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS) {
       line = std::max(1, document.ErrorLineNum());
-      throw std::invalid_argument(std::string("this is not XML (") +
-                                  tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()) + ")");
+      throw std::invalid_argument("this is not XML: " + xml_reason(document));
     }
     const tinyxml2::XMLElement* root = document.RootElement();
     if (!root || std::string(root->Name()) != "relay") {

@@ -88,8 +88,8 @@ pid_t start(std::vector<std::string> words, int input, int output) {
 std::string reason(int status) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "it takes too long to read: simplify it";
   if (WIFSIGNALED(status))
-    return "its reader crashed (" + std::string(strsignal(WTERMSIG(status))) + "): the file is damaged or hostile";
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "its reader failed: the file is damaged or hostile";
+    return "its reader crashed (" + std::string(strsignal(WTERMSIG(status))) + "): the file is damaged or hostile; export it again";
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "its reader failed: the file is damaged or hostile; export it again";
   return "";
 }
 

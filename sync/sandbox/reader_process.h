@@ -41,7 +41,7 @@ std::vector<std::uint8_t> content_of(Record record);
 
 // Why a reader was ended, in one clause.
 inline constexpr const char* kReaderTimeout = "it takes too long to read: simplify it";
-inline constexpr const char* kReaderEndedEarly = "its reader ended too early: the file is damaged or hostile";
+inline constexpr const char* kReaderEndedEarly = "its reader ended too early: the file is damaged or hostile; export it again";
 std::string too_much_content(std::size_t max_bytes);
 
 }  // namespace tactus::sync

@@ -6,7 +6,8 @@
 
 namespace tactus::sync {
 
-// what(); of an error of the file system: the path, the reason and the remedy, in place of the name of the library function.
+// what() of an exception of this system. An exception of a library names a function of it instead: of an error of the file system, the path,
+// the reason and the remedy; of the system, of memory and of nlohmann::json, the reason and the remedy.
 std::string error_text(const std::exception& e);
 
 }  // namespace tactus::sync

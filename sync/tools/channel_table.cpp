@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <tactus/log_info_t.hpp>
@@ -44,6 +45,18 @@ std::string begin_of(const TableContext& context, const LogEvent& event, HostTim
   return text;
 }
 
+// As for_each_leaf; also false when a number is not finite: no receiver accepts such a message (lcmtypes/valid.h).
+bool for_each_finite_leaf(const MessageType& type, std::span<const std::uint8_t> bytes,
+                          const std::function<void(const std::string&, const Field&, const Leaf&)>& visit) {
+  bool finite = true;
+  const bool whole = for_each_leaf(type, bytes, [&](const std::string& path, const Field& field, const Leaf& value) {
+    const auto* real = std::get_if<double>(&value);
+    if (real && !std::isfinite(*real)) finite = false;
+    visit(path, field, value);
+  });
+  return whole && finite;
+}
+
 }  // namespace
 
 void TableContext::learn(const LogEvent& event) {
@@ -79,7 +92,7 @@ std::string long_rows(const TableContext& context, const MessageType& type, cons
   const std::string begin = begin_of(context, event, arrival), end = "," + std::to_string(context.run()) + "\n";
   std::string rows;
   const bool whole =
-      for_each_leaf(type, event.data, [&](const std::string& path, const Field&, const Leaf& value) {
+      for_each_finite_leaf(type, event.data, [&](const std::string& path, const Field&, const Leaf& value) {
         if (path.starts_with(kHeader)) return;
         rows += begin + "," + path + "," + unit_of_path(path) + "," + csv_cell(value) + end;
       });
@@ -113,7 +126,7 @@ std::string WideColumns::names() const {
 std::string WideColumns::row(const TableContext& context, const LogEvent& event, HostTime arrival) const {
   std::vector<std::string> cells(paths_.size());
   const bool whole =
-      for_each_leaf(type_, event.data, [&](const std::string& path, const Field&, const Leaf& value) {
+      for_each_finite_leaf(type_, event.data, [&](const std::string& path, const Field&, const Leaf& value) {
         if (const auto it = column_.find(path); it != column_.end()) cells[it->second] = csv_cell(value);
       });
   if (!whole) return "";
@@ -124,7 +137,7 @@ std::string WideColumns::row(const TableContext& context, const LogEvent& event,
 
 std::string tag_names() { return "log_s,node,tag,unit,value,run\n"; }
 
-std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival) {
+std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival, const LogInterval& interval) {
   const auto m = decode<tag_values_t>(event.data.data(), event.data.size());
   std::string rows;
   if (!m) return rows;
@@ -134,6 +147,7 @@ std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent
   const std::int64_t sent_ns =
       (m->header.clock == info.header.clock ? 0 : to_ns(arrival) - m->header.publish_time_ns) - info.live_from_ns;
   tags.read(*m, [&](const TagTable::List& list, const tag_def_t& tag, std::int64_t time_ns, double value) {
+    if (!interval.contains(sent_ns + time_ns)) return;
     rows += seconds(sent_ns + time_ns) + "," + csv_cell(std::string_view(list.node)) + "," + csv_cell(std::string_view(tag.name)) + "," +
             csv_cell(std::string_view(tag.unit)) + "," + number(value) + "," + std::to_string(context.run()) + "\n";
   });

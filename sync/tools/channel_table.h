@@ -13,6 +13,7 @@
 #include "sync/log/log_origin.h"
 #include "sync/log/log_reader.h"
 #include "sync/node/tag_table.h"
+#include "sync/tools/log_interval.h"
 
 namespace tactus::sync {
 
@@ -45,7 +46,7 @@ std::string csv_cell(const Leaf& value);
 
 // log_s, world_s, sender, seq, field, unit, value, run.
 std::string long_names();
-// The rows of a message; empty when it is not a complete message of the type.
+// The rows of a message; empty when it is not a complete message of the type, or holds a number that is not finite.
 std::string long_rows(const TableContext& context, const MessageType& type, const LogEvent& event,
                       HostTime arrival);
 
@@ -63,9 +64,9 @@ class WideColumns {
   std::vector<std::string> paths_;
 };
 
-// log_s, node, tag, unit, value, run: of every value in a TAG_VALUES.
+// log_s, node, tag, unit, value, run: of every value in a TAG_VALUES whose log_s is in the interval.
 std::string tag_names();
-std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival);
+std::string tag_rows(TagTable& tags, const TableContext& context, const LogEvent& event, HostTime arrival, const LogInterval& interval = {});
 
 // log_s, bytes, data_hex, run: of a message of another system, whose fields are unknown.
 std::string foreign_names();

@@ -56,6 +56,7 @@ int main(int argc, char** argv) try {
     sync::TimestampedEvents events(logs.index(), run);
     sync::HostTime at{};
     for (sync::LogEvent event; events.next(event, at);) {
+      if (!options.interval.contains(events.origin(), at)) continue;
       if (event.channel == channels::kToolState) haptic.add<tool_state_t>(event, run);
       if (event.channel == channels::kThermalState) thermal.add<thermal_state_t>(event, run);
     }

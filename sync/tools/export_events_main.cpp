@@ -35,8 +35,8 @@ std::optional<Message> message_of(const sync::LogEvent& e) {
 
 class Tables {
  public:
-  explicit Tables(const std::string& out)
-      : events_(out + "/events.csv"), presented_(out + "/presented.csv"), clocks_(out + "/media_clock.csv"), maps_(out + "/clock_map.csv"),
+  Tables(const std::string& out, const sync::LogInterval& interval)
+      : interval_(interval), events_(out + "/events.csv"), presented_(out + "/presented.csv"), clocks_(out + "/media_clock.csv"), maps_(out + "/clock_map.csv"),
         frames_(out + "/frame_shown.csv") {
     events_ << sync::events_csv_names();
     presented_ << sync::presented_csv_names();
@@ -49,8 +49,7 @@ class Tables {
     names_.clear(), seen_.clear(), reported_.clear();
     sync::TimestampedEvents events(index, run);
     sync::HostTime at{};
-    for (sync::LogEvent e; events.next(e, at);) add(e, run);
-    event_count_ += seen_.size(), report_count_ += reported_.size();
+    for (sync::LogEvent e; events.next(e, at);) add(e, run, interval_.contains(events.origin(), at));
   }
 
   // Throws std::runtime_error with one sentence when the tables cannot be written.
@@ -63,21 +62,23 @@ class Tables {
   }
 
  private:
-  void add(const sync::LogEvent& e, int run) {
+  // inside: it arrived in the interval. An event or report belongs to its first message; repetitions do not move it into the interval.
+  void add(const sync::LogEvent& e, int run, bool inside) {
     if (e.channel == channels::kContactEvents)
       if (const auto m = message_of<contact_events_t>(e))
         for (const contact_event_t& event : m->events)
-          if (seen_.insert(event.event_id).second) events_ << sync::csv_row(event, m->clock, run);
+          if (seen_.insert(event.event_id).second && inside) ++event_count_, events_ << sync::csv_row(event, m->clock, run);
     if (e.channel == channels::kPresented)
       if (const auto m = message_of<presented_t>(e))
         for (const presentation_t& p : m->reports)
-          if (reported_.insert({m->header.source, p.event_id, p.part}).second) presented_ << sync::csv_row(m->modality, p, run);
+          if (reported_.insert({m->header.source, p.event_id, p.part}).second && inside) ++report_count_, presented_ << sync::csv_row(m->modality, p, run);
+    if (e.channel == channels::kNodeHealth)
+      if (const auto m = message_of<node_health_t>(e)) names_[m->header.source] = m->node;
+    if (!inside) return;
     if (e.channel == channels::kMediaClock)
       if (const auto m = message_of<media_clock_t>(e)) clocks_ << sync::csv_row(*m, run);
     if (e.channel == channels::kClockMap)
       if (const auto m = message_of<clock_map_t>(e)) maps_ << sync::csv_row(*m, run);
-    if (e.channel == channels::kNodeHealth)
-      if (const auto m = message_of<node_health_t>(e)) names_[m->header.source] = m->node;
     if (e.channel == channels::kFrameShown)
       if (const auto m = message_of<frame_shown_t>(e)) {
         const auto name = names_.find(m->header.source);
@@ -85,6 +86,7 @@ class Tables {
       }
   }
 
+  sync::LogInterval interval_;
   std::ofstream events_, presented_, clocks_, maps_, frames_;
   std::map<std::int32_t, std::string> names_;  // of processes, by header.source
   std::set<std::int64_t> seen_;
@@ -103,7 +105,7 @@ int main(int argc, char** argv) try {
   sync::parse_or_exit(app, "export_events", argc, argv);
 
   const sync::ExportedLogs logs(options, "export_events");
-  Tables tables(out);
+  Tables tables(out, options.interval);
   for (const int run : logs.runs()) tables.add_run(logs.index(), run);
   tables.close(out);
   return 0;

@@ -27,7 +27,6 @@ constexpr std::size_t kMaxFiles = 256;  // random bytes would create more channe
 
 struct ExportOptions : sync::ExportedLogOptions {
   std::string out = ".", channels;
-  double since_s = -1e18, until_s = 1e18;
   bool wide = false;
 };
 
@@ -98,8 +97,8 @@ class Export {
     std::int64_t seen = 0;
     for (sync::TimestampedEvents events(index, run); events.next(event, at);) {
       if (++seen % 100'000 == 0 && isatty(STDERR_FILENO)) std::cerr << "\r" << seen << " events" << std::flush;
-      const double t = context.log_s(at);
-      if (t >= options_.since_s && t <= options_.until_s) add(event, at, context, tags);
+      // Values of tags are dated before their message arrives.
+      if (event.channel == channels::kTagValues || options_.interval.contains(origin, at)) add(event, at, context, tags);
     }
     if (seen >= 100'000 && isatty(STDERR_FILENO)) std::cerr << "\r\033[K";
     unlisted_ += tags.unlisted();
@@ -161,7 +160,7 @@ class Export {
     }
     if (type && name == channels::kTagValues) {
       if (!tags_) tags_ = std::make_unique<Table>(options_.out + "/tags.csv", sync::tag_names());
-      tags_->write(sync::tag_rows(tags, context, event, at));
+      tags_->write(sync::tag_rows(tags, context, event, at, options_.interval));
       return;
     }
     auto it = channels_.find({name, type});
@@ -204,8 +203,6 @@ int main(int argc, char** argv) try {
   export_options.add_to(app);
   app.add_option("--out", export_options.out, "folder for the tables").existing_folder().show_default();
   app.add_option("--channels", export_options.channels, "regular expression that the whole name of a channel matches; default: all");
-  app.add_option("--since", export_options.since_s, "from this second of the log");
-  app.add_option("--until", export_options.until_s, "up to this second of the log");
   app.add_flag("--wide", export_options.wide, "a row for each message and a column for each field, without lists, instead of a row for each value");
   sync::parse_or_exit(app, "export_log", argc, argv);
   std::optional<Export> all;

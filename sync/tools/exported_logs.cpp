@@ -10,11 +10,15 @@ namespace tactus::sync {
 void ExportedLogOptions::add_to(Arguments& app) {
   app.add_option("LOG", logs, "logs of one run, in order, or its folder: all parts").required().existing_path();
   app.add_option("--run", run, "number of one run of a log with several; default: all, with their number in the column run").range(1, 1'000'000);
+  app.add_option("--since", interval.since_s, "from this second of the log");
+  app.add_option("--until", interval.until_s, "up to this second of the log");
   app.add_flag("--quiet", quiet, "without warnings about the log");
 }
 
 ExportedLogs::ExportedLogs(const ExportedLogOptions& options, const std::string& program)
     : run_(options.run), file_(options.logs), index_(file_.bytes()) {
+  if (!(options.interval.since_s <= options.interval.until_s))
+    throw std::runtime_error("--since is after --until; give the earlier second of the log with --since");
   index_.read_all();
   try {
     const std::vector<std::string> warnings = index_.warnings(run_);

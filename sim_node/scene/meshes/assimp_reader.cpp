@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim_node/scene/meshes/assimp_reason.h"
 #include "sim_node/scene/meshes/collada_size.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
 #include "sync/sandbox/regular_file.h"
@@ -18,7 +19,6 @@
 namespace tactus::sim {
 namespace {
 
-constexpr char kNoSurface[] = "it holds no surface, neither a triangle nor a polygon; export it with faces";
 constexpr int kMaxNodeDepth = 256;  // as in gltf_reader.cpp
 
 // Opens regular files of bounded size below the readable folders only, because a material library may be named
@@ -192,6 +192,17 @@ bool is_default_material(const MeshMaterial& m) {
   return (m.name.empty() || m.name == AI_DEFAULT_MATERIAL_NAME) && m.colour_map.none();
 }
 
+// The readers of PLY and of others pass on any index, and the post-processing relies on them.
+void check_indices(const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+      for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k)
+        if (mesh.mFaces[f].mIndices[k] >= mesh.mNumVertices)
+          throw std::runtime_error("face " + std::to_string(f + 1) + " names a vertex that the file does not hold; export it again");
+  }
+}
+
 bool has_surface(const aiScene& scene) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m)
     for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
@@ -216,6 +227,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file, const sync::Readab
     throw std::runtime_error("it names \"" + outside.substr(0, 200) + "\", which is hidden or outside the folder of the scene");
   if (scene && scene->mRootNode) {
     if (!has_surface(*scene)) throw std::runtime_error(kNoSurface);
+    check_indices(*scene);
     // Counted before processing: normals of millions of triangles take minutes.
     Totals all, shown;
     for (unsigned m = 0; m < scene->mNumMeshes; ++m) all.add(*scene->mMeshes[m]);
@@ -223,12 +235,7 @@ MeshParts read_with_assimp(const std::filesystem::path& file, const sync::Readab
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
                                          aiProcess_GenSmoothNormals | aiProcess_JoinIdenticalVertices);
   }
-  if (!scene || !scene->mRootNode) {
-    // The words of assimp for a file of points and lines alone.
-    const std::string reason = importer.GetErrorString();
-    const bool empty = reason.find("No meshes") != std::string::npos || reason.find("invalid primitive type") != std::string::npos;
-    throw std::runtime_error(empty ? kNoSurface : reason);
-  }
+  if (!scene || !scene->mRootNode) throw std::runtime_error(assimp_reason(file, importer.GetErrorString()));
   Totals shown;  // again, because polygons have become triangles
   shown.add(*scene, *scene->mRootNode, 0);
   MeshParts mesh;

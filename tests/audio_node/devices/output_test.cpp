@@ -33,10 +33,11 @@ struct FakeCard : Card {
   const std::string& card() const override { return name; }
   const std::string& medium() const override { return name; }
   std::optional<MediaPair> next_pair() override { return std::nullopt; }
+  std::string recording_fault() const override { return fault; }
 
   std::shared_ptr<Plug> plug;
   Render render;
-  std::string name = "fake";
+  std::string name = "fake", fault;
   std::int64_t blocks = 0;
   float loudest = 0;
 };
@@ -82,6 +83,22 @@ std::string status_after_updates(const Settings& settings, std::optional<sync::N
 sync::HostTime at_block(int n) { return sync::host_time(kStart_ns + std::llround(n * 128e9 / kRate)); }
 
 }  // namespace
+
+TEST_CASE("A sound file that the disk refuses is reported once as a change of state, and stays in the status") {
+  FakeCard* card = nullptr;
+  Output output(".", "", 0, [&](const StreamOptions&, Card::Render render) {
+    auto made = std::make_unique<FakeCard>(std::make_shared<FakeCard::Plug>(), std::move(render));
+    card = made.get();
+    return made;
+  });
+  output.configure(Settings{});
+  output.keep_open(at_block(0));
+  CHECK(output.take_status_change() == "plays on fake into fake");
+  card->fault = "the disk refuses the sound (File too large): fake ends after 1.0 s";
+  CHECK(output.take_status_change() == "plays on fake into fake; " + card->fault);
+  CHECK_FALSE(output.take_status_change());
+  CHECK(output.status_text().find("; " + card->fault) != std::string::npos);
+}
 
 TEST_CASE("An unplugged card is reported as lost, and hits sound again after its return") {
   const auto plug = std::make_shared<FakeCard::Plug>();

@@ -12,8 +12,11 @@ import sys
 import tempfile
 import unittest
 import wave
+from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
+from tactus.commands import prepare
 KITS = "/usr/share/hydrogen/data/drumkits"
 
 
@@ -31,6 +34,16 @@ def check(*arguments, command="check-sounds"):
     done = subprocess.run([ROOT / "scripts" / "tactus", command, *arguments], capture_output=True, text=True,
                           check=False)
     return done.returncode, done.stdout + done.stderr
+
+
+class Missing(unittest.TestCase):
+    def test_a_program_that_is_not_built_is_built_after_its_packages_are_installed(self):
+        called = []
+        with tempfile.TemporaryDirectory() as empty, mock.patch.object(prepare, "BIN", pathlib.Path(empty)), mock.patch.dict(os.environ), \
+                mock.patch.object(prepare, "run_script", lambda *words: called.append([os.path.basename(words[0]), *words[1:]])):
+            os.environ.pop("TACTUS_BIN", None)
+            prepare.program("check_sounds")
+        self.assertEqual([["setup", "--packages"], ["build", "check_sounds"]], called)
 
 
 class CheckSounds(unittest.TestCase):

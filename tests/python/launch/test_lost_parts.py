@@ -36,6 +36,26 @@ class Recording(unittest.TestCase):
         line = "recorder: /out/run.lcmlog: the disk refuses the log (File too large); 70 events, 800 lost because the disk is full or too slow"
         self.assertTrue(self.errors(line)[-1].startswith(line + "; free space, raise the limit of file sizes"))
 
+    def test_a_sound_file_that_the_disk_refused_is_an_error_with_the_place_of_its_end(self):
+        line = "audio_node: plays on virtual card into audio.wav; the disk refuses the sound (File too large): audio.wav ends after 1.3 s"
+        (said,) = main.incomplete_sound([line])
+        self.assertTrue(said.startswith(f"{line}; free space, raise the limit of file sizes"))
+        text = (pathlib.Path(__file__).resolve().parents[3] / "audio_node/devices/stream.cpp").read_text(encoding="utf-8")
+        for words in main.SOUND_LOST:
+            self.assertIn(f'"{words}', text)
+        self.assertEqual([], main.incomplete_sound([]))
+
+    def test_a_video_that_ends_early_is_found_in_the_output_of_its_node(self):
+        line = "visual_node: the video ends early: its encoder has died"
+        with tempfile.TemporaryDirectory() as kept:
+            folder = pathlib.Path(kept)
+            (folder / "services").mkdir()
+            nodes = {name: services.Service(folder, name, ["true"], folder / f"{name}.log", folder) for name in ("visual_node", "audio_node")}
+            (folder / "visual_node.log").write_text(f"visual_node: 60 Hz\n{line}\nvisual_node: the window was closed\n", encoding="utf-8")
+            self.assertEqual([line], main.lines_with(main.VIDEO_ENDS, nodes))
+        text = (pathlib.Path(__file__).resolve().parents[3] / "visual_node/video/recording.cpp").read_text(encoding="utf-8")
+        self.assertIn(f'"{main.VIDEO_ENDS[0]}', text)
+
     def test_a_full_disk_is_named_also_when_the_log_of_the_recorder_is_on_it(self):
         self.assertIn("the disk of /out is full", self.errors(disk=FULL)[-1])
 

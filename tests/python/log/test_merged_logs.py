@@ -1,42 +1,17 @@
 """Tests of every reader of logs with logs that were merged, swapped, cut together or stamped by a clock that was set."""
 import csv
 import json
-import os
 import pathlib
-import struct
 import subprocess
 import tempfile
 import unittest
 
-REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
-BIN = pathlib.Path(os.environ.get("TACTUS_BIN") or REPOSITORY / "build" / "dev" / "bin")
-SYNC_WORD = 0xEDA1DA01
+from log_files import BIN, make_run, write_log
+
 HOUR_US = 3600 * 1_000_000
 LATENCY_S = 0.002  # a jump is known to one latency
 ODD_NAMES = [b"/robot/joint states", b'a,b"c', b"../../evil", "Übung".encode(), b"L" * 63, b"=1+1", b"line\nbreak", b"CAM;LEFT", b".hidden", b"WORLD_STATE2",
              b"imu data", b"events", b"TOOL STATE", bytes(range(1, 64))]
-
-
-def read_log(path):
-    data, at = path.read_bytes(), 0
-    while at < len(data):
-        _, _, stamp, name_bytes, size = struct.unpack(">IqqII", data[at:at + 28])
-        yield stamp, data[at + 28:at + 28 + name_bytes], data[at + 28 + name_bytes:at + 28 + name_bytes + size]
-        at += 28 + name_bytes + size
-
-
-def write_log(path, events):
-    with open(path, "wb") as file:
-        for number, (stamp, channel, data) in enumerate(events):
-            file.write(struct.pack(">IqqII", SYNC_WORD, number, stamp, len(channel), len(data)) + channel + data)
-
-
-def make_run(folder, scene, seconds):
-    words = [str(REPOSITORY / "scripts" / "run"), "--virtual-time", "--seconds", str(seconds), "--out", str(folder), scene]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, env={**os.environ, "TACTUS_BIN": str(BIN)})
-    if done.returncode != 0:
-        raise AssertionError(done.stdout + done.stderr)
-    return list(read_log(folder / "run.lcmlog"))
 
 
 class MergedLogs(unittest.TestCase):

@@ -47,8 +47,8 @@ TEST_CASE("A reader that ends badly costs one file, and few of them end the sess
 
 TEST_CASE("A session with a hostile reader is one clause: too early, too much, twice, never, or without an end") {
   const SystemPrograms programs;
-  CHECK(why("exit 0") == "its reader ended too early: the file is damaged or hostile");
-  CHECK(why("exit 3") == "its reader failed: the file is damaged or hostile");
+  CHECK(why("exit 0") == "its reader ended too early: the file is damaged or hostile; export it again");
+  CHECK(why("exit 3") == "its reader failed: the file is damaged or hostile; export it again");
   // A record of 4 GiB.
   CHECK(why(R"(printf 'R\000\000\000\000\001\000\000\000'; cat /dev/zero)", 10, {.max_bytes = 1 << 20}) == "it has more than 1 MiB of content: simplify it");
   CHECK(why("head -c 18 >/dev/null; printf '" + kAnswer + "'; cat >/dev/null") == "");

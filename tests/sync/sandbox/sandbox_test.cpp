@@ -158,8 +158,8 @@ TEST_CASE("A reader that ends badly, never, or with too much output is one claus
   setenv("TACTUS_BIN", "/bin", 1);
   CHECK_THAT(why_ended("no_such_reader", {}), Catch::Contains("no_such_reader") && Catch::Contains("is missing"));
   CHECK(why_ended("true", {}) == "its reader returned nothing");
-  CHECK(why_ended("false", {}) == "its reader failed: the file is damaged or hostile");
-  CHECK(why_ended("head", {"-c", "100", "/dev/zero"}) == "its reader ended too early: the file is damaged or hostile");
+  CHECK(why_ended("false", {}) == "its reader failed: the file is damaged or hostile; export it again");
+  CHECK(why_ended("head", {"-c", "100", "/dev/zero"}) == "its reader ended too early: the file is damaged or hostile; export it again");
   CHECK(why_ended("cat", {"/dev/zero"}, {.max_bytes = 1 << 20}) == "it has more than 1 MiB of content: simplify it");
   CHECK(why_ended("sleep", {"1000"}, {.timeout = std::chrono::seconds(0)}) == "it takes too long to read: simplify it");
   CHECK_THAT(why_ended("sh", {"-c", "kill -SEGV $$"}), Catch::StartsWith("its reader crashed (Segmentation fault)"));

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <tactus/asset_request_t.hpp>
 #include <tactus/clock_map_t.hpp>
@@ -163,6 +164,21 @@ TEST_CASE("Text with commas, quotes and line ends stays in one cell, and damaged
   CHECK(WideColumns(type).row(log.context, log.event("X", bytes), {}).empty());
 }
 
+TEST_CASE("A message with a number that is not finite has no rows") {
+  Log log;
+  Samples samples(23);
+  tool_state_t m{};
+  samples.fill(m);
+  const MessageType& type = *message_type("tool_state_t");
+  CHECK_FALSE(long_rows(log.context, type, log.event("X", encode(m)), {}).empty());
+  for (const double number : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    m.force_N.x = number;
+    const auto bytes = encode(m);
+    CHECK(long_rows(log.context, type, log.event("X", bytes), {}).empty());
+    CHECK(WideColumns(type).row(log.context, log.event("X", bytes), {}).empty());
+  }
+}
+
 TEST_CASE("Tagged values have their own time stamps, and senders have names") {
   Log log;
   tag_list_t list{};
@@ -193,6 +209,32 @@ TEST_CASE("Tagged values have their own time stamps, and senders have names") {
     CHECK(rows[2] == std::vector<std::string>{clock == 77 ? "0.200000000" : "0.210000000", "haptic_node", "speed",
                                               "m/s", "0.25", "1"});
   }
+}
+
+TEST_CASE("A part of a log holds both of its ends, and tagged values by their own time") {
+  CHECK(LogInterval{}.contains(INT64_MIN));
+  const LogInterval part{.since_s = 0.15, .until_s = 0.2};
+  CHECK_FALSE(part.contains(149'999'999));
+  CHECK(part.contains(150'000'000));
+  CHECK(part.contains(200'000'000));
+  CHECK_FALSE(part.contains(200'000'001));
+
+  Log log;
+  tag_list_t list{};
+  list.header.run_id = list.header.incarnation = 1, list.node = "haptic_node", list.list = 5, list.total = list.tag_count = 1;
+  list.tags = {{"force", "N", 0}};
+  log.context.learn(log.event(channels::kTagList, encode(list)));
+  tag_values_t values{};
+  values.header.run_id = values.header.incarnation = 1, values.header.clock = 77;
+  values.node = "haptic_node", values.list = 5, values.column_count = 1, values.columns = {0};
+  values.row_count = 2, values.times_ns = {5'100'000'000, 5'200'000'000};
+  values.value_count = 2, values.values = {1, 3};
+  TagTable tags = log.context.tags();
+  const auto bytes = encode(values);
+  // The message arrives after the interval; one of its values lies within it.
+  const auto rows = cells_of(tag_rows(tags, log.context, log.event(channels::kTagValues, bytes), host_time(6'010'000'000), part));
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0][0] == "0.200000000");
 }
 
 TEST_CASE("A message of another system has a row with all its bytes") {

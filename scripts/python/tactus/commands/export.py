@@ -18,8 +18,7 @@ contact events and of their presentation by each modality. docs/export.md and sc
   --out DIR              folder for the tables; default: tables, beside the log
   --channels REGEX       only channels whose complete name matches: 'TOOL_STATE|CONTACT.*'; default: all
   --run N                only this run, of a log with several; default: all, with their number in the column run
-  --since S, --until S   from and up to this second of the log, in the tables of channels and tags; tables of events, presentations
-                         and traces hold the whole log, and their names are printed
+  --since S, --until S   only messages that were recorded from and up to this second of the log, in every table
   --wide                 one row for each message with a column for each scalar field, for PlotJuggler; default: one row for
                          each value
   --help                 this text
@@ -71,22 +70,16 @@ def main(words):
 
 def run_programs(logs, out, options):
     """Writes all tables; returns the exit status of the first program that fails, or 0."""
-    run = options[options.index("--run"):][:2] if "--run" in options else []
-    for name, own in (("export_log", options), ("export_events", ["--quiet", *run]), ("export_csv", ["--quiet", *run])):
+    chosen = ["--quiet"]
+    for option in ("--run", "--since", "--until"):
+        if option in options:
+            at = len(options) - 1 - options[::-1].index(option)
+            chosen += options[at:at + 2]
+    for name, own in (("export_log", options), ("export_events", chosen), ("export_csv", chosen)):
         try:
             status = subprocess.run([BIN / name, *logs, "--out", out, *own], check=False).returncode
         except OSError as error:
             return prepare.refuse("export", f"{BIN / name}: {error.strerror}; run scripts/build")
         if status != 0:
             return status
-        if name == "export_log":
-            cut = times_of_tables(out)
-    whole = sorted(name for name, time_ns in times_of_tables(out).items() if cut.get(name) != time_ns)
-    if whole and {"--since", "--until"} & set(options):
-        print(f"export: these tables hold the whole log, also before --since and after --until: {', '.join(whole)}")
     return 0
-
-
-def times_of_tables(folder):
-    """{table: time of its last change}."""
-    return {entry.name: entry.stat().st_mtime_ns for entry in os.scandir(folder) if entry.name.endswith(".csv")}

@@ -43,11 +43,12 @@ def install_and_build(*targets):
 
 
 def program(name):
-    """Path of a program of the build; builds it when missing, unless TACTUS_BIN is set. Exits on failure."""
+    """Path of a program of the build; installs the packages and builds it when it is missing, unless TACTUS_BIN is set. Exits on failure."""
     path = BIN / name
     if not os.access(path, os.X_OK):
         if os.environ.get("TACTUS_BIN"):
             sys.exit(f"{name}: {path} does not exist; correct TACTUS_BIN")
+        install()
         run_script(SCRIPTS / "build", name)
     return str(path)
 

@@ -147,9 +147,11 @@ def run(plan, watch=watch_over):
     if stop.cut_short:
         report_run(stop.cut_short)
         warnings.append(stop.cut_short)
+    warnings += lines_with(VIDEO_ENDS, running.services)
     errors += summarise(plan, git, {*lost, *taken_down}, restarts, warnings)
     report_run(f"results in {plan.out}")
     errors += incomplete_recording(plan.out, running.services["recorder"].last_line_with(REFUSED), deaths.get("recorder", []))
+    errors += incomplete_sound(lines_with(SOUND_LOST, running.services))
     if "sim_node" in running.services:
         errors += stopped_world(plan.out, running.services["sim_node"].last_line_with([WORLD_STOPPED]))
     os.close(claim)
@@ -157,6 +159,9 @@ def run(plan, watch=watch_over):
 
 
 REFUSED = ("the disk refuses the log", " lost because ")  # sync/tools/recorder/recorder.cpp
+SOUND_LOST = ("the disk refuses the sound", "the disk is too slow for the sound")  # audio_node/devices/stream.cpp
+VIDEO_ENDS = ("the video ends early",)  # visual_node/video/recording.cpp
+MORE_SPACE = "free space, raise the limit of file sizes (ulimit -f), or name another folder with --out"
 
 
 def stopped_world(out, said):
@@ -173,11 +178,21 @@ def incomplete_recording(out, refused, deaths):
         errors.append(f"recorder: died {times}, the last time by {deaths[-1]}; the messages of that time are not in {out}/run.lcmlog; see {out}/logs/recorder.log")
     disk = os.statvfs(out)
     if refused:
-        errors.append(f"{refused}; free space, raise the limit of file sizes (ulimit -f), or name another folder with --out")
+        errors.append(f"{refused}; {MORE_SPACE}")
     elif disk.f_bavail * disk.f_frsize < arguments.FULL_BYTES:
         errors.append(f"recorder: the disk of {out} is full; the last messages, the end of sound and video, and tables can be missing; free space, or name "
                       "another folder with --out")
     return errors
+
+
+def lines_with(words, services):
+    """The last line of the output of each node that holds one of these texts."""
+    return [line for service in services.values() if (line := service.last_line_with(words))]
+
+
+def incomplete_sound(lines):
+    """The errors of sound files that end early or lack a part. lines: of the output of each node that reported one."""
+    return [f"{line}; {MORE_SPACE}" for line in lines]
 
 
 def starts_with_program_name(sentence):
