@@ -129,7 +129,11 @@ def run_faults(bin_folder, out, complete):
     summary = Answer([bin_folder / "summarise", out, "--out", out / "summary.json"])
     faults = summary.crashes() + [fault for name in ("export_log", "export_events", "export_csv")
                                   for fault in Answer([bin_folder / name, out, "--out", tables, "--quiet"]).crashes()]
-    faults += table_faults(tables) + nan_faults(out / "summary.json")
+    faults += table_faults(tables)
+    if (out / "summary.json").exists():
+        faults += nan_faults(out / "summary.json")
+    else:  # a world that stops at its first step leaves no run
+        faults += refusal_faults(summary, "out")
     if complete and (out / "summary.json").exists():
         facts = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         for name, sense in facts["contacts"]["by_modality"].items():
