@@ -97,6 +97,7 @@ const sdf::Element* geometry_of(const sdf::Element& owner) {
 
 std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Element& owner, const Eigen::Isometry3d& pose) {
   const sdf::Element* element = geometry_of(owner);
+  if (!owner.child("geometry")) context.warn(owner, "lacks its <geometry> and has no effect");
   if (!element) return std::nullopt;
   ShapeDef shape;
   shape.pose = pose;

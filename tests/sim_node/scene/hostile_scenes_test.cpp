@@ -111,11 +111,15 @@ TEST_CASE("A scene reads no file outside its folder, by any element, path or lin
 }
 
 TEST_CASE("The environment names folders of scenes too, and they are searched") {
+  unsetenv("GZ_SIM_RESOURCE_PATH");
   setenv("TACTUS_SCENE_FOLDERS", "/a::/b", 1);
   CHECK(scene_folders({"/c"}) == std::vector<std::filesystem::path>{"/c", "/a", "/b"});
-  unsetenv("TACTUS_SCENE_FOLDERS");
-  Stranger stranger;
   SceneFile models;
+  setenv("GZ_SIM_RESOURCE_PATH", ("/no/such/folder:" + models.folder().string() + "::/a").c_str(), 1);
+  CHECK(scene_folders({"/c"}) == std::vector<std::filesystem::path>{"/c", "/a", "/b", models.folder()});
+  unsetenv("TACTUS_SCENE_FOLDERS");
+  unsetenv("GZ_SIM_RESOURCE_PATH");
+  Stranger stranger;
   models.write("chair/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>");
   models.write("chair/model.sdf", model_file("chair", ""));
   CHECK_THAT(stranger.error(world(include("model://chair"))), Contains("is not found"));

@@ -5,12 +5,12 @@ using namespace tactus::sim;
 
 namespace {
 
-const std::string kCube = "<model name='cube'><link name='l'>" + collision("<box><size>.1 .1 .1</size></box>") + "</link></model>\n";
+const std::string kSmallCube = "<model name='cube'><link name='l'>" + collision("<box><size>.1 .1 .1</size></box>") + "</link></model>\n";
 
 // A world of a cube and these elements loads, with one warning for each line of it.
 void check_ignored(const std::string& inside, int line = 4) {
   INFO(inside);
-  SceneFile file(world(kCube + inside));
+  SceneFile file(world(kSmallCube + inside));
   CHECK(file.load_error() == "");
   REQUIRE(file.warnings.size() == 1);
   CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:" + std::to_string(line) + ": "));
@@ -18,7 +18,7 @@ void check_ignored(const std::string& inside, int line = 4) {
 
 }  // namespace
 
-TEST_CASE("Unknown sensors, atmospheres, spherical coordinates and plugins are warnings, with whatever is in them") {
+TEST_CASE("Unknown sensors, atmospheres, spherical coordinates and plugins are warnings, with any content") {
   check_ignored("<atmosphere type='martian'><temperature>cold</temperature></atmosphere>");
   check_ignored("<spherical_coordinates><surface_model>MOON_SCS</surface_model><latitude_deg>x</latitude_deg></spherical_coordinates>");
   check_ignored("<plugin name='p' filename='p.so'><include>none</include><model/></plugin>");
@@ -35,7 +35,7 @@ TEST_CASE("Unknown sensors, atmospheres, spherical coordinates and plugins are w
 }
 
 TEST_CASE("A model that a skipped include empties is a warning") {
-  SceneFile file(world(kCube + "<model name='robot'><include><uri>https://fuel.example/robot</uri></include></model>\n"
+  SceneFile file(world(kSmallCube + "<model name='robot'><include><uri>https://fuel.example/robot</uri></include></model>\n"
                                "<frame name='f' attached_to='robot'/>\n<model name='empty'/>"));
   CHECK(file.load_error() == "");
   REQUIRE(file.warnings.size() == 3);

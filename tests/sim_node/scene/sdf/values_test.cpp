@@ -1,4 +1,4 @@
-// Numbers, flags, colours and poses of elements, and what is rejected in their place.
+// Numbers, flags, colours and poses of elements, and rejected values.
 #include "sim_node/scene/sdf/values.h"
 
 #include <catch2/catch.hpp>
