@@ -44,7 +44,7 @@ double plate_constant(const Elastic& m, double thickness_m) {
 struct Beam {
   double g, h, j;
 };
-Beam free_beam(int n) {
+Beam free_beam_mode(int n) {
   if (n == 0) return {0, 0, 0};
   if (n == 1) return {0, 0, 12 / (pi * pi)};
   const double k = n == 2 ? 1.506 : n - 0.5;
@@ -119,7 +119,7 @@ std::vector<NaturalFrequency> supported_plate(const Elastic& m, double a_m, doub
 std::vector<NaturalFrequency> free_plate(const Elastic& m, double a_m, double b_m, double thickness_m, ModeRange range) {
   const double ratio = a_m / b_m, nu = m.poissons_ratio;
   return plate_modes(range, 0, [&](int i, int k) {
-    const Beam x = free_beam(i), y = free_beam(k);
+    const Beam x = free_beam_mode(i), y = free_beam_mode(k);
     const double lambda2 = pi * pi *
                            std::sqrt(std::pow(x.g, 4) + std::pow(y.g * ratio, 4) +
                                      2 * ratio * ratio * (nu * x.h * y.h + (1 - nu) * x.j * y.j));

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxOthers = 64;               // damaged messages name ru
 // Of the last 32 messages with a known number; single contradictions are damage.
 constexpr int kMinContradictions = 12;
 
-std::string seconds(std::int64_t us) {
+std::string text_of_us(std::int64_t us) {
   char text[40];
   std::snprintf(text, sizeof text, "%.3f", static_cast<double>(us) * 1e-6);
   return text;
@@ -273,7 +273,7 @@ std::vector<std::string> LogIndex::warnings(int number) const {
   for (const RecordedRun& r : chosen) {
     copies += r.copies;
     for (const RecordedRun::Jump& jump : r.jumps)
-      if (++jumps <= 3) sizes += (jumps > 1 ? ", " : "") + seconds(jump.by_us) + " s after " + seconds(jump.us - r.first_us) + " s";
+      if (++jumps <= 3) sizes += (jumps > 1 ? ", " : "") + text_of_us(jump.by_us) + " s after " + text_of_us(jump.us - r.first_us) + " s";
   }
   if (jumps > 0)
     sentences.push_back("the clock of the recorder jumped " + std::to_string(jumps) + (jumps == 1 ? " time (" : " times (") + sizes +

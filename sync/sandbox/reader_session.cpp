@@ -81,7 +81,7 @@ std::vector<std::uint8_t> ReaderSession::exchange(std::span<const std::uint8_t> 
     if (left <= 0) throw Failure(kReaderTimeout);
     if (poll(&ready, 1, static_cast<int>(left)) < 0 && errno != EINTR) throw Failure(std::strerror(errno));
     if (ready.revents & POLLOUT) {
-      const ssize_t n = send(process_->socket, out.data() + sent, out.size() - sent, MSG_DONTWAIT | MSG_NOSIGNAL);
+      const ssize_t n = ::send(process_->socket, out.data() + sent, out.size() - sent, MSG_DONTWAIT | MSG_NOSIGNAL);
       sent += n > 0 ? static_cast<std::size_t>(n) : 0;
     }
     if (!(ready.revents & (POLLIN | POLLHUP | POLLERR))) continue;

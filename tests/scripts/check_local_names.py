@@ -86,7 +86,7 @@ def parameter_lists(words):
 def declared(words):
     """[(name, kind)] that one declaration, without its body, declares. The kind of a function has its parameters, that of an alias its target."""
     words = without_template(words)
-    if not words or words[0] in ("static_assert", "extern", "friend"):
+    if not words or words[0] in ("static_assert", "extern", "friend", "catch"):
         return []
     if words[0] == "namespace":
         return [(words[1], "alias " + " ".join(words[3:]))]

@@ -5,6 +5,7 @@
 #include <tactus/touch_plane_t.hpp>
 
 #include "haptic_node/safety/wall_energy.h"
+#include "tests/haptic_node/support/tick.h"
 #include "tests/haptic_node/support/trial.h"
 #include "tests/haptic_node/support/waves.h"
 #include "tests/haptic_node/support/world.h"
@@ -12,12 +13,6 @@
 using namespace tactus;
 using namespace tactus::haptic;
 using namespace tactus::haptic::test;
-
-namespace {
-
-constexpr double kDt = 1e-3;
-
-}  // namespace
 
 TEST_CASE("The tilt by a relief is no part of the account, with the torque and for a surface that moves") {
   std::vector<Surface> surfaces(1);

@@ -10,7 +10,7 @@ using namespace tactus::sync;
 
 namespace {
 
-constexpr HostTime kNow = host_time(1'000'000'000);
+constexpr HostTime kReceived = host_time(1'000'000'000);
 // As many datagrams as a socket holds: 4 MB, each with 256 bytes and its overhead of 512 (sync/bus/receive_buffer.h).
 constexpr int kSocketHolds = 21'845;
 
@@ -40,7 +40,7 @@ TEST_CASE("Reading while the loop is held up ends in a flood of malformed datagr
   FloodedPort port{{-1}};
   port.endless = true;
   MessageBatch stored;
-  const int got = store_unread(port, stored, kNow);
+  const int got = store_unread(port, stored, kReceived);
   CHECK(got == port.reads);
   CHECK(got >= kSocketHolds);  // a full socket is emptied
   CHECK(got < kMaxRead + kStoreBatch);
@@ -58,7 +58,7 @@ TEST_CASE("Reading while the loop is held up stores a bounded number of bytes, i
     MessageBatch stored;
     for (int pass = 0; pass < 5; ++pass) {
       const std::int64_t before = port.reads;
-      const int got = store_unread(port, stored, kNow);
+      const int got = store_unread(port, stored, kReceived);
       CAPTURE(trial, malformed_percent, largest, pass);
       CHECK(got == port.reads - before);
       CHECK(got < kMaxRead + kStoreBatch);
@@ -72,8 +72,8 @@ TEST_CASE("Reading while the loop is held up stores a bounded number of bytes, i
 TEST_CASE("A few waiting datagrams are all stored, in order") {
   FloodedPort port{{3, -1, 1, 0, -1, 2}};
   MessageBatch stored;
-  CHECK(store_unread(port, stored, kNow) == 6);
+  CHECK(store_unread(port, stored, kReceived) == 6);
   REQUIRE(stored.size() == 4);
   for (const auto& [i, size] : {std::pair<std::size_t, std::size_t>{0, 3}, {1, 1}, {2, 0}, {3, 2}}) CHECK(stored[i].data.size() == size);
-  CHECK(stored[0].arrival == kNow);
+  CHECK(stored[0].arrival == kReceived);
 }
