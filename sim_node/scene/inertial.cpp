@@ -103,17 +103,31 @@ bool read_auto(const LoadContext& context, const sdf::Element& link, const sdf::
   return true;
 }
 
+bool is_automatic(const sdf::Element* inertial) {
+  const std::string_view value = inertial ? inertial->value("auto") : std::string_view();
+  return value == "true" || value == "1";
+}
+
+void warn_of_densities(const LoadContext& context, const sdf::Element& link, const sdf::Element* inertial) {
+  const auto warn = [&](const sdf::Element* owner) {
+    if (const sdf::Element* density = sdf::child_of(owner, "density"))
+      context.warn(*density, "has no effect: it counts for <inertial auto=\"true\">");
+  };
+  warn(inertial);
+  for (const sdf::Element& collision : link.children("collision")) warn(&collision);
+}
+
 }  // namespace
 
 void read_inertial(const LoadContext& context, const sdf::Element& link, std::span<const ShapeDef> shapes,
                    BodyDef& body) {
+  const sdf::Element* inertial = link.child("inertial");
+  if (!is_automatic(inertial)) warn_of_densities(context, link, inertial);
   if (body.is_static) {
     body.mass_kg = 0;
     return;
   }
-  const sdf::Element* inertial = link.child("inertial");
-  const std::string_view automatic = inertial ? inertial->value("auto") : std::string_view();
-  if ((automatic == "true" || automatic == "1") && read_auto(context, link, *inertial, shapes, body)) return;
+  if (is_automatic(inertial) && read_auto(context, link, *inertial, shapes, body)) return;
   const sdf::Element* mass = sdf::child_of(inertial, "mass");
   const sdf::Element* inertia = sdf::child_of(inertial, "inertia");
   bool has_density = false;

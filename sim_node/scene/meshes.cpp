@@ -101,9 +101,7 @@ const MeshParts& mesh_parts(LoadContext& context, const std::filesystem::path& f
 }
 
 void add_mesh(LoadContext& context, TriangleMesh mesh) {
-  std::size_t corners = mesh.indices.size();
-  for (const TriangleMesh& other : context.world.meshes) corners += other.indices.size();
-  if (corners / 3 > kMaxSceneTriangles)
+  if ((context.mesh_corners += mesh.indices.size()) / 3 > kMaxSceneTriangles)
     throw std::runtime_error("with it the scene has more than " + std::to_string(kMaxSceneTriangles) +
                              " triangles: simplify it, or use fewer sizes of it");
   context.world.meshes.push_back(std::move(mesh));

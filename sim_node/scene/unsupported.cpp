@@ -76,19 +76,11 @@ void check_pace(const LoadContext& context, const sdf::Element& e) {
     warn("the world is stepped 1000 times a second");
 }
 
-// <density> counts for <inertial auto="true"> only.
-bool has_unused_density(const sdf::Element& element) {
-  if (element.name != "density") return false;
-  const sdf::Element* inertial = element.parent->parent->child("inertial");
-  const std::string_view automatic = inertial ? inertial->value("auto") : std::string_view();
-  return automatic != "true" && automatic != "1";
-}
-
 void walk(const LoadContext& context, const sdf::Element& element, const Names& supported) {
   for (const sdf::Element& child : element.children()) {
     if (&child == context.camera_sensor) continue;
     if (element.name == "world" && is_setting_element(child.name)) continue;  // handled by tactus_settings.h
-    if (!supported.contains(child.name) || has_unused_density(child)) {
+    if (!supported.contains(child.name)) {
       if (!harmless(child)) context.warn(child, "is not supported and has no effect");
       continue;
     }

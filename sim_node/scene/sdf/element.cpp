@@ -43,12 +43,14 @@ std::string path_of(const Element& element) {
   return path;
 }
 
-std::string message(const Element& element, const std::string& sentence) {
-  std::string text = where(element) + ": " + path_of(element) + " " + sentence;
-  // Names and values may hold line breaks, and sequences that move the cursor of a terminal.
+std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
   return text;
+}
+
+std::string message(const Element& element, const std::string& sentence) {
+  return one_line(where(element) + ": " + path_of(element) + " " + sentence);
 }
 
 void reject(const Element& element, const std::string& sentence) {

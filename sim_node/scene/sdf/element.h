@@ -87,7 +87,9 @@ std::string where(const Source& source, int line);
 std::string where(const Element& element);
 // "/sdf/world[@name="w"]/model[@name="m"]": through the elements that include it.
 std::string path_of(const Element& element);
-// One line: "FILE:LINE: PATH sentence".
+// Names and values of a file may hold line breaks, and sequences that move the cursor of a terminal: blanks instead.
+std::string one_line(std::string text);
+// "FILE:LINE: PATH sentence", in one line.
 std::string message(const Element& element, const std::string& sentence);
 // Throws std::runtime_error with that message.
 [[noreturn]] void reject(const Element& element, const std::string& sentence);

@@ -72,7 +72,8 @@ void Tree::include(const tinyxml2::XMLElement& xml, const Source& source, Elemen
                         "> is not the first one of an included file and has no effect");
   const std::string_view type = content->Value();
   Element holder;  // takes the place of the parent until the overrides are in force
-  holder.name = parent.name, holder.source = &source, holder.parent = parent.parent, holder.attributes = parent.attributes;
+  holder.name = parent.name, holder.source = &source, holder.parent = parent.parent;
+  if (const Attribute* name = parent.attribute("name")) holder.attributes.push_back(*name);
   if (type == "include") include(*content, document->source, holder);
   else copy(*content, document->source, &holder);
   Element* element = holder.first;

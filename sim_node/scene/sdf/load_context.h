@@ -29,6 +29,7 @@ struct LoadContext {
   std::map<std::string, int> body_of = {};      // scoped name -> index
   std::unordered_map<const sdf::Element*, int> body_of_link = {};
   std::map<std::string, int> mesh_of = {};      // file, submesh and scale -> index
+  std::size_t mesh_corners = 0;                 // of all meshes
   std::map<std::string, int> material_of = {};  // name -> index
   const sdf::Element* camera_sensor = nullptr;  // the first one found: used when the scene names no camera
   Eigen::Isometry3d camera_sensor_pose = Eigen::Isometry3d::Identity();
@@ -36,6 +37,7 @@ struct LoadContext {
   std::map<std::string, int> material_of_file = {};                           // of a mesh file that names one
   std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};  // name -> definition in <world>
   std::unordered_map<std::string, int> look_index_of = {};                    // content -> index
+  std::unordered_map<std::string, std::int64_t> picture_of_file = {};         // file and use -> hash
   std::set<std::size_t> placeholders = {};  // visuals that stand for a mesh that is not there
   sync::ConfinedPictures pictures = {};
 

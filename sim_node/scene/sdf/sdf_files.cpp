@@ -19,6 +19,7 @@ constexpr std::size_t kMaxChain = 32;  // files that include each other one belo
 constexpr std::uintmax_t kMaxFileBytes = 16 << 20, kMaxTotalBytes = 64 << 20;
 // An element or an attribute takes tinyxml2 about 120 bytes: these are 500 MB.
 constexpr std::size_t kMaxParts = 4'000'000;
+constexpr int kMaxAttributes = 256;  // of an element: they are found by a search (design)
 
 std::string after_scheme(const std::string& uri) {
   const auto at = uri.find("://");
@@ -39,6 +40,14 @@ std::string root_sentence(const tinyxml2::XMLElement* root) {
     return "this is a robot in URDF, and the outermost element must be <sdf version=\"1.9\">: convert it with "
            "gz sdf -p ROBOT.urdf > robot.sdf";
   return "the outermost element must be <sdf version=\"1.9\">";
+}
+
+void check_attributes(const sdf::Source& source, const tinyxml2::XMLElement& element) {
+  int attributes = 0;
+  for (const auto* each = element.FirstAttribute(); each; each = each->Next())
+    if (++attributes > kMaxAttributes)
+      throw std::runtime_error(sdf::where(source, element.GetLineNum()) + ": <" + element.Value() + "> has more than " +
+                               std::to_string(kMaxAttributes) + " attributes: remove some");
 }
 
 }  // namespace
@@ -140,6 +149,7 @@ const SdfFiles::Document& SdfFiles::scan(const fs::path& file, const std::string
     const auto [element, depth, foreign] = pending.back();
     pending.pop_back();
     const std::string_view name = element->Value();
+    check_attributes(document.source, *element);
     count(document, element->GetLineNum(), {1, 0, depth});
     if (name == "include" && !foreign && element != document.xml->RootElement()) follow(*element, document, depth, chain);
     for (auto* child = element->LastChildElement(); child; child = child->PreviousSiblingElement())
