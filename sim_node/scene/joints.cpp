@@ -113,7 +113,10 @@ void add_joint(LoadContext& context, const sdf::Element& from, const Eigen::Isom
   joint.kind = *kind;
   joint.parent = body_of(context, from, "parent");
   joint.child = body_of(context, from, "child");
-  if (joint.parent == joint.child) context.reject(from, "connects a link with itself");
+  if (joint.parent == joint.child) {
+    context.warn(from, "connects a link with itself and has no effect");
+    return;
+  }
   joint.anchor_m = (model_pose * context.resolve(from)).translation();
   const unsigned axes = *kind == JointKind::kUniversal ? 2 : *kind == JointKind::kFixed || *kind == JointKind::kBall ? 0 : 1;
   for (unsigned i = 0; i < axes; ++i) {

@@ -25,12 +25,15 @@ std::string RandomWorld::numbers(int count, double low, double high) {
   return text.str();
 }
 
+std::string RandomWorld::frame_attribute(const Scope& scope) {
+  if (scope.version == 4 || scope.frames.empty() || chance(0.5)) return "";
+  return std::string(scope.version <= 6 ? " frame=\"" : " relative_to=\"") + scope.frames[static_cast<std::size_t>(below(scope.frames.size()))] + "\"";
+}
+
 std::string RandomWorld::pose(const Scope* scope) {
   if (chance(0.2)) return "";
   const int version = scope ? scope->version : 9;
-  std::string attributes;
-  if (scope && version != 4 && !scope->frames.empty() && chance(0.5))
-    attributes += std::string(version <= 6 ? " frame=\"" : " relative_to=\"") + scope->frames[static_cast<std::size_t>(below(scope->frames.size()))] + "\"";
+  std::string attributes = scope ? frame_attribute(*scope) : "";
   std::string rotation = numbers(3, -3, 3);
   if (version >= 9 && chance(0.3)) {
     attributes += " degrees=\"true\"";
@@ -175,7 +178,7 @@ std::string RandomWorld::model(const std::string& model_name, int version, int d
     for (int i = below(3); i > 0; --i) text += joint(scope);
   text += frame(scope);
   std::string attributes;
-  if (version >= 8 && chance(0.3)) attributes = " placement_frame=\"" + scope.frames[static_cast<std::size_t>(below(scope.frames.size()))] + "\"";
+  if (version >= 8 && may_place_ && chance(0.3)) attributes = " placement_frame=\"" + scope.frames[static_cast<std::size_t>(below(scope.frames.size()))] + "\"";
   Scope none;
   none.version = version;
   return "<model name=\"" + model_name + "\"" + attributes + ">\n" + pose(inside ? inside : &none) + (is_static ? "<static>true</static>\n" : "") +
@@ -186,14 +189,17 @@ std::string RandomWorld::include(Scope& scope, bool merge) {
   const std::string file = name("part") + ".sdf", own = name("m");
   std::string first;
   const int version = 4 + below(6);
-  // A file of 1.4 to 1.6 has no frames that a merged model could lose.
+  may_place_ = !merge;
   files_[file] = file_of(version, model(own, version, 0, nullptr, first));
+  may_place_ = true;
   std::string text = "<include" + std::string(merge ? " merge=\"true\"" : "") + "><uri>" + file + "</uri>\n";
   std::string used = own;
   if (chance(0.5)) text += "<name>" + (used = name("m")) + "</name>\n";
-  const std::string placed = pose(&scope);
+  std::string placed = pose(&scope);
+  // libsdformat rounds the pose of a merged model to six digits of its Euler angles: these are exact in six digits.
+  if (merge) placed = "<pose" + frame_attribute(scope) + ">0.25 -1.5 " + std::to_string(below(9)) + " 0.5 -0.75 " + std::to_string(below(3)) + "</pose>\n";
   text += placed;
-  if (!placed.empty() && chance(0.3)) text += "<placement_frame>" + first + "</placement_frame>\n";
+  if (!merge && !placed.empty() && chance(0.3)) text += "<placement_frame>" + first + "</placement_frame>\n";
   if (!merge && chance(0.2)) text += "<static>true</static>\n";
   const std::string prefix = merge ? "" : used + "::";
   if (!merge) scope.frames.push_back(used);

@@ -31,6 +31,8 @@ class RandomWorld {
   std::string name(const std::string& kind) { return kind + std::to_string(++names_); }
 
   std::string pose(const Scope* scope);
+  // relative_to="..." in the spelling of the version, or nothing.
+  std::string frame_attribute(const Scope& scope);
   std::string geometry();
   std::string colour();
   std::string material();
@@ -47,6 +49,7 @@ class RandomWorld {
 
   std::mt19937_64 random_;
   int names_ = 0;
+  bool may_place_ = true;  // by a placement frame
   std::map<std::string, std::string> files_;
 };
 

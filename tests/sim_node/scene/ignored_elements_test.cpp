@@ -72,6 +72,13 @@ TEST_CASE("A missing mesh of a collision is an error") {
   CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:6: ") && Catch::Contains("not found"));
 }
 
+TEST_CASE("A joint of a link with itself is left out with a warning") {
+  SceneFile file(model("<link name='a'/><frame name='f' attached_to='a'/>\n<joint name='j' type='fixed'><parent>a</parent><child>f</child></joint>"));
+  CHECK(file.load().joints.empty());
+  REQUIRE(file.warnings.size() == 1);
+  CHECK_THAT(file.short_warnings()[0], Catch::StartsWith("scene.sdf:5: ") && Catch::Contains("with itself"));
+}
+
 TEST_CASE("A joint of an unknown kind that connects nothing is left out when its kind is not supported") {
   SceneFile file(model("<link name='a'/>\n<joint name='j' type='gearbox'><parent>a</parent><child>none</child></joint>"));
   CHECK(file.load_error() == "");
