@@ -22,6 +22,9 @@ std::string relative_to_of(const Element& element) {
 Frames::Frames(const Element& world) {
   add_scope(world, kNone);
   for (std::size_t scope = 0; scope < scopes_.size(); ++scope) connect(static_cast<int>(scope));
+  // A circle is rejected even where nothing uses it. A joint whose child is not known may have no effect.
+  for (std::size_t node = 0; node < nodes_.size(); ++node)
+    if (nodes_[node].relative_to != kUnknown) resolve(static_cast<int>(node));
 }
 
 void Frames::add_scope(const Element& element, int model) {

@@ -30,7 +30,7 @@ std::string_view next_word(std::string_view& rest) {
 // Whether the word is a number as a whole, within the range of its type.
 template <typename Number>
 bool parse(std::string_view word, Number& value) {
-  if (word.starts_with('+')) word.remove_prefix(1);
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
   const char* end = word.data() + word.size();
   const auto [at, error] = std::from_chars(word.data(), end, value);
   return at == end && error == std::errc{};
