@@ -20,8 +20,9 @@ constexpr double kMaxDensity_kg_m3 = 25'000;  // that of a <tactus:material>, to
 Eigen::Matrix3d read_inertia(const LoadContext& context, const sdf::Element& inertia) {
   const auto entry = [&](const char* name, double missing) { return sdf::child_number(&inertia, name, missing); };
   const double xy = entry("ixy", 0), xz = entry("ixz", 0), yz = entry("iyz", 0);
+  const double xx = entry("ixx", 1), yy = entry("iyy", 1), zz = entry("izz", 1);
   Eigen::Matrix3d matrix;
-  matrix << entry("ixx", 1), xy, xz, xy, entry("iyy", 1), yz, xz, yz, entry("izz", 1);
+  matrix << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   const Eigen::Vector3d moments = matrix.selfadjointView<Eigen::Lower>().eigenvalues();  // ascending
   if (!(moments[0] > 0))
     context.reject(inertia,

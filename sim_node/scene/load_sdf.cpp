@@ -112,7 +112,6 @@ WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& w
   def.source_text = files.main_text();
   read_world(context, world);
   warn_unsupported(context, tree.root());
-  for (std::string& warning : warnings) warning = sdf::one_line(std::move(warning));
   return def;
 } catch (const std::runtime_error& e) {
   throw std::runtime_error(sdf::one_line(e.what()));

@@ -11,6 +11,9 @@ namespace {
 
 constexpr int kGravityInWorld = 6, kRelativeTo = 7, kExpressedIn = 7, kUniqueNames = 7, kScopedNames = 8;
 
+// More than any name has (design): bodies have the names of all models around them.
+constexpr std::size_t kMaxName = 256;
+
 void convert_pose(Element& pose) {
   if (const Attribute* frame = pose.attribute("frame")) set_attribute(pose, "relative_to", frame->value);
 }
@@ -38,6 +41,7 @@ bool is_reserved(std::string_view name) {
 void check_name(const Element& element) {
   const std::string_view name = element.value("name");
   if (name.empty()) reject(element, "lacks its attribute \"name\"");
+  if (name.size() > kMaxName) reject(element, "has a name of more than " + std::to_string(kMaxName) + " bytes: shorten it");
   if (is_reserved(name)) reject(element, "has a reserved name: choose another than world and __NAME__");
   if (name.find("::") != std::string_view::npos && (element.source->version >= kScopedNames || element.name == "model"))
     reject(element, "has a name with \"::\", which separates names: choose another");
@@ -85,7 +89,7 @@ void check_names(Element& element, std::deque<std::string>& strings, std::vector
       if (child->source->version >= kUniqueNames)
         reject(*child, "has the name of another link, joint, frame or model beside it: choose another");
       strings.push_back(free_name(names, *child));
-      warnings.push_back(message(*child, "has the name of another element beside it: it is \"" + strings.back() +
+      add_warning(warnings, message(*child, "has the name of another element beside it: it is \"" + strings.back() +
                                              "\" here"));
       set_attribute(*child, "name", strings.back());
       names.insert(strings.back());

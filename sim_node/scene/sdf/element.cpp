@@ -3,6 +3,12 @@
 #include <stdexcept>
 
 namespace tactus::sim::sdf {
+namespace {
+
+constexpr std::size_t kMaxMessage = 1500, kMaxWarnings = 1000;  // more than anyone reads (design)
+constexpr std::size_t kMaxQuotedName = 100;
+
+}  // namespace
 
 const Attribute* Element::attribute(std::string_view key) const {
   for (const Attribute& each : attributes)
@@ -37,13 +43,14 @@ std::string path_of(const Element& element) {
   std::string path;
   for (const Element* each = &element; each; each = each->parent) {
     std::string step = "/" + std::string(each->name);
-    if (const Attribute* name = each->attribute("name")) step += "[@name=\"" + std::string(name->value) + "\"]";
+    if (const Attribute* name = each->attribute("name")) step += "[@name=\"" + std::string(name->value.substr(0, kMaxQuotedName)) + "\"]";
     path.insert(0, step);
   }
   return path;
 }
 
 std::string one_line(std::string text) {
+  if (text.size() > kMaxMessage) text = text.substr(0, kMaxMessage) + "...";
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
   return text;
@@ -51,6 +58,13 @@ std::string one_line(std::string text) {
 
 std::string message(const Element& element, const std::string& sentence) {
   return one_line(where(element) + ": " + path_of(element) + " " + sentence);
+}
+
+void add_warning(std::vector<std::string>& warnings, const std::string& text) {
+  if (warnings.size() > kMaxWarnings) return;
+  warnings.push_back(warnings.size() < kMaxWarnings
+                         ? one_line(text)
+                         : "there are more than " + std::to_string(kMaxWarnings) + " warnings; the rest is left out");
 }
 
 void reject(const Element& element, const std::string& sentence) {

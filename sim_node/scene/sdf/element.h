@@ -87,10 +87,13 @@ std::string where(const Source& source, int line);
 std::string where(const Element& element);
 // "/sdf/world[@name="w"]/model[@name="m"]": through the elements that include it.
 std::string path_of(const Element& element);
-// Names and values of a file may hold line breaks, and sequences that move the cursor of a terminal: blanks instead.
+// Names and values of a file may hold line breaks, and sequences that move the cursor of a terminal: blanks instead. At most
+// 1,500 bytes.
 std::string one_line(std::string text);
 // "FILE:LINE: PATH sentence", in one line.
 std::string message(const Element& element, const std::string& sentence);
+// Adds a warning; beyond a thousand, one sentence says that there are more.
+void add_warning(std::vector<std::string>& warnings, const std::string& text);
 // Throws std::runtime_error with that message.
 [[noreturn]] void reject(const Element& element, const std::string& sentence);
 

@@ -68,7 +68,7 @@ void Tree::include(const tinyxml2::XMLElement& xml, const Source& source, Elemen
   if (!content)
     throw std::runtime_error(here + ": includes \"" + document->source.shown + "\", which has no <model> and no <light>");
   if (const auto* other = content->NextSiblingElement(content->Value()))
-    warnings_.push_back(where(document->source, other->GetLineNum()) + ": <" + content->Value() +
+    add_warning(warnings_, where(document->source, other->GetLineNum()) + ": <" + content->Value() +
                         "> is not the first one of an included file and has no effect");
   const std::string_view type = content->Value();
   Element holder;  // takes the place of the parent until the overrides are in force
@@ -111,7 +111,7 @@ void Tree::override_model(const tinyxml2::XMLElement& include, const Source& sou
     const std::string_view type = child->Value();
     if (is_foreign(type)) copy(*child, source, &model);
     else if (type != "uri" && type != "name" && type != "pose" && type != "static" && type != "placement_frame")
-      warnings_.push_back(where(source, child->GetLineNum()) + ": <" + child->Value() + "> inside <include> has no effect");
+      add_warning(warnings_, where(source, child->GetLineNum()) + ": <" + child->Value() + "> inside <include> has no effect");
   }
   check_names(model, strings_, warnings_);
 }

@@ -3,7 +3,6 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMaxWarnings = 1000;  // more than anyone reads (design)
 constexpr double kMaxDistance_m = 1e6;
 
 }  // namespace
@@ -13,10 +12,7 @@ void LoadContext::reject(const sdf::Element& element, const std::string& sentenc
 }
 
 void LoadContext::warn(const sdf::Element& element, const std::string& sentence) const {
-  if (warnings.size() > kMaxWarnings) return;
-  warnings.push_back(warnings.size() == kMaxWarnings
-                         ? "there are more than " + std::to_string(kMaxWarnings) + " warnings; the rest is left out"
-                         : sdf::message(element, sentence));
+  sdf::add_warning(warnings, sdf::message(element, sentence));
 }
 
 std::filesystem::path LoadContext::asset_file(const std::string& uri, const sdf::Element& element) const {

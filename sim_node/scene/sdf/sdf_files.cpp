@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sim_node/scene/sdf/model_folder.h"
+#include "sim_node/scene/sdf/xml_scan.h"
 #include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
@@ -17,9 +18,9 @@ namespace fs = std::filesystem;
 constexpr int kMaxIncludes = 100'000;
 constexpr std::size_t kMaxChain = 32;  // files that include each other one below the other
 constexpr std::uintmax_t kMaxFileBytes = 16 << 20, kMaxTotalBytes = 64 << 20;
-// An element or an attribute takes tinyxml2 about 120 bytes: these are 500 MB.
-constexpr std::size_t kMaxParts = 4'000'000;
-constexpr int kMaxAttributes = 256;  // of an element: they are found by a search (design)
+// Elements, with their ends, and attributes. Each takes tinyxml2 about 120 bytes: these are 300 MB.
+constexpr std::size_t kMaxParts = 2'500'000;
+constexpr std::size_t kMaxAttributes = 256;  // of an element: they are found by a search (design)
 
 std::string after_scheme(const std::string& uri) {
   const auto at = uri.find("://");
@@ -29,25 +30,12 @@ std::string after_scheme(const std::string& uri) {
 bool is_remote(const std::string& uri) { return uri.starts_with("http://") || uri.starts_with("https://"); }
 bool is_builtin(const std::string& uri) { return uri == "model://sun" || uri == "model://ground_plane"; }
 
-// Every element has a "<", every attribute a "=".
-std::size_t count_parts(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return c == '<' || c == '='; }));
-}
-
 std::string root_sentence(const tinyxml2::XMLElement* root) {
   const std::string name = root ? root->Value() : "";
   if (name == "robot")
     return "this is a robot in URDF, and the outermost element must be <sdf version=\"1.9\">: convert it with "
            "gz sdf -p ROBOT.urdf > robot.sdf";
   return "the outermost element must be <sdf version=\"1.9\">";
-}
-
-void check_attributes(const sdf::Source& source, const tinyxml2::XMLElement& element) {
-  int attributes = 0;
-  for (const auto* each = element.FirstAttribute(); each; each = each->Next())
-    if (++attributes > kMaxAttributes)
-      throw std::runtime_error(sdf::where(source, element.GetLineNum()) + ": <" + element.Value() + "> has more than " +
-                               std::to_string(kMaxAttributes) + " attributes: remove some");
 }
 
 }  // namespace
@@ -95,7 +83,7 @@ void SdfFiles::check_version(sdf::Source& source, const tinyxml2::XMLElement& ro
     throw std::runtime_error(here + ": <sdf version=\"" + version +
                              "\"> is older than 1.4, the oldest version that is read: convert it with gz sdf -p OLD.sdf > new.sdf");
   if (*minor > sdf::kNewestVersion)
-    warnings_.push_back(here + ": <sdf version=\"" + version + "\"> is newer than 1.12: its new elements are not supported");
+    sdf::add_warning(warnings_, here + ": <sdf version=\"" + version + "\"> is newer than 1.12: its new elements are not supported");
   source.version = *minor;
 }
 
@@ -110,7 +98,11 @@ void SdfFiles::parse(Document& document, const std::string& included_by) {
   if ((bytes_ += text.size()) > kMaxTotalBytes)
     throw std::runtime_error(document.source.shown + ": the files of the scene are larger than " +
                              std::to_string(kMaxTotalBytes >> 20) + " MiB together: simplify the scene");
-  if ((parts_ += count_parts(text)) > kMaxParts)
+  const sdf::XmlCount parts = sdf::count_xml(text);
+  if (parts.most_attributes > kMaxAttributes)
+    throw std::runtime_error(sdf::where(document.source, parts.line) + ": an element has more than " +
+                             std::to_string(kMaxAttributes) + " attributes: remove some");
+  if ((parts_ += parts.parts) > kMaxParts)
     throw std::runtime_error(document.source.shown + ": the files of the scene have more than " +
                              std::to_string(kMaxParts) + " elements and attributes: simplify the scene");
   tinyxml2::XMLDocument& xml = *document.xml;
@@ -149,7 +141,6 @@ const SdfFiles::Document& SdfFiles::scan(const fs::path& file, const std::string
     const auto [element, depth, foreign] = pending.back();
     pending.pop_back();
     const std::string_view name = element->Value();
-    check_attributes(document.source, *element);
     count(document, element->GetLineNum(), {1, 0, depth});
     if (name == "include" && !foreign && element != document.xml->RootElement()) follow(*element, document, depth, chain);
     for (auto* child = element->LastChildElement(); child; child = child->PreviousSiblingElement())
@@ -202,7 +193,7 @@ const SdfFiles::Document* SdfFiles::document_of(const tinyxml2::XMLElement& incl
   fs::path found = find(uri, from.source.file);
   if (found.empty() && (is_remote(uri) || is_builtin(uri))) {
     skipped_.push_back({uri, include.GetLineNum()});
-    warnings_.push_back(here + ": include of \"" + uri + "\" is " +
+    sdf::add_warning(warnings_, here + ": include of \"" + uri + "\" is " +
                         (is_remote(uri) ? "skipped: nothing is downloaded, put a copy beside the file"
                                         : "not beside the file: the built-in model replaces it"));
     return nullptr;

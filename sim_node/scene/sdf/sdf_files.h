@@ -21,7 +21,7 @@ namespace tactus::sim {
 // Elements of a scene with all its includes. More than any scene has (design): 30,000 bodies have 500,000. They bound
 // files that include each other several times: ten files of 500 bytes that each include the next one ten times have
 // 10^10 models.
-constexpr std::size_t kMaxSceneElements = 4'000'000, kMaxCopiedElements = 1'000'000;
+constexpr std::size_t kMaxSceneElements = 2'500'000, kMaxCopiedElements = 1'000'000;
 // Levels of elements with their includes; functions call themselves for each level.
 constexpr int kMaxSceneDepth = 100;
 
