@@ -1,11 +1,11 @@
 #include "sim_node/scene/joints.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sdf/JointAxis.hh>
 
 #include "sim_node/scene/sdf/attributes.h"
-#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/scene/sdf/values.h"
 
 namespace tactus::sim {
 namespace {
@@ -15,53 +15,73 @@ constexpr double kNoLimit = 1e16;
 // Target speed of a motor without one, rad/s or m/s: high enough for a constant torque.
 constexpr double kFreeSpeed = 1000;
 
-std::optional<JointKind> kind_of(sdf::JointType type) {
-  switch (type) {
-    case sdf::JointType::FIXED: return JointKind::kFixed;
-    case sdf::JointType::REVOLUTE:
-    case sdf::JointType::CONTINUOUS: return JointKind::kRevolute;
-    case sdf::JointType::PRISMATIC: return JointKind::kPrismatic;
-    case sdf::JointType::UNIVERSAL: return JointKind::kUniversal;
-    case sdf::JointType::BALL: return JointKind::kBall;
-    default: return std::nullopt;
-  }
+struct JointType {
+  std::string_view name;
+  std::optional<JointKind> kind;  // nullopt: not supported
+};
+constexpr JointType kTypes[] = {{"fixed", JointKind::kFixed},         {"revolute", JointKind::kRevolute},
+                                {"continuous", JointKind::kRevolute}, {"prismatic", JointKind::kPrismatic},
+                                {"universal", JointKind::kUniversal}, {"ball", JointKind::kBall},
+                                {"revolute2", std::nullopt},          {"gearbox", std::nullopt},
+                                {"screw", std::nullopt}};
+
+const JointType& type_of(const sdf::Element& joint) {
+  std::string name(joint.value("type"));
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const JointType& type : kTypes)
+    if (name == type.name) return type;
+  std::string names;
+  for (const JointType& type : kTypes) names += (names.empty() ? "" : ", ") + std::string(type.name);
+  sdf::reject(joint, "has type \"" + name + "\": there are " + names);
 }
 
-int body_of(const LoadContext& context, const std::string& scope, const std::string& link, const sdf::Element& element) {
-  if (link == "world") return -1;
-  const auto known = context.body_of.find(scope + link);
-  if (known == context.body_of.end()) context.reject(element, "connects \"" + link + "\": there is no such link");
-  return known->second;
+// The body that an end of the joint moves with; -1: the world.
+int body_of(const LoadContext& context, const sdf::Element& joint, const char* name) {
+  const sdf::Element* end = joint.child(name);
+  if (!end || end->text.empty()) context.reject(joint, "lacks its <" + std::string(name) + ">");
+  const sdf::Element* link = context.frames.link(*end);
+  if (link) return context.body_of_link.at(link);
+  if (end->name == "child") context.reject(*end, "is the world, which does not move: exchange parent and child");
+  return -1;
 }
 
-JointAxis read_axis(const LoadContext& context, const sdf::JointAxis& from, bool has_limits,
-                    const Eigen::Isometry3d& model_pose) {
-  const sdf::Element& element = *from.Element();
-  ignition::math::Vector3d xyz;
-  const sdf::Errors errors = from.ResolveXyz(xyz, "__model__");
-  if (!errors.empty()) context.reject(element, "has no direction: " + errors.front().Message());
-  JointAxis axis;
-  axis.axis = model_pose.linear() * to_eigen(xyz);
-  if (!axis.axis.allFinite() || axis.axis.norm() < 1e-9)
-    context.reject(element, "has no direction: its <xyz> is zero");
-  axis.axis.normalize();
-  axis.damping = from.Damping(), axis.friction = from.Friction();
-  axis.stiffness = from.SpringStiffness(), axis.reference = from.SpringReference();
-  for (const double value : {axis.damping, axis.friction, axis.stiffness})
-    if (!(value >= 0 && value < 1e9))
-      context.reject(element, "has a damping, friction or stiffness that is negative or not finite");
-  if (!std::isfinite(axis.reference)) context.reject(element, "has a <spring_reference> that is not finite");
+void read_dynamics(const LoadContext& context, const sdf::Element* dynamics, JointAxis& axis) {
+  const auto value = [&](const char* name) { return sdf::child_number(dynamics, name, 0); };
+  axis.damping = value("damping"), axis.friction = value("friction");
+  axis.stiffness = value("spring_stiffness"), axis.reference = value("spring_reference");
+  for (const double each : {axis.damping, axis.friction, axis.stiffness})
+    if (!(each >= 0 && each < 1e9))
+      context.reject(*dynamics, "has a damping, friction or stiffness that is negative or not finite");
+}
+
+void read_limit(const LoadContext& context, const sdf::Element* limit, bool has_limits, JointAxis& axis) {
+  const auto value = [&](const char* name, double missing) {
+    const sdf::Element* given = sdf::child_of(limit, name);
+    return given ? sdf::number_or_infinity(*given) : missing;
+  };
   if (has_limits) {
-    if (std::isnan(from.Lower()) || std::isnan(from.Upper()) || from.Lower() > from.Upper())
-      context.reject(element, "has a lower limit above its upper limit");
-    axis.lower = std::max(from.Lower(), -kNoLimit), axis.upper = std::min(from.Upper(), kNoLimit);
+    const double lower = value("lower", -kNoLimit), upper = value("upper", kNoLimit);
+    if (lower > upper) context.reject(*limit, "has a lower limit above its upper limit");
+    axis.lower = std::max(lower, -kNoLimit), axis.upper = std::min(upper, kNoLimit);
   }
-  if (from.Effort() >= 0 && from.Effort() < 1e15) axis.effort = from.Effort();
+  const double effort = value("effort", -1);
+  if (effort >= 0 && effort < 1e15) axis.effort = effort;
+}
+
+JointAxis read_axis(const LoadContext& context, const sdf::Element& from, bool has_limits,
+                    const Eigen::Isometry3d& model_pose) {
+  JointAxis axis;
+  axis.axis = model_pose.linear() * context.frames.direction(from);
+  if (!axis.axis.allFinite() || axis.axis.norm() < 1e-9)
+    context.reject(from, "has no direction: its <xyz> is zero");
+  axis.axis.normalize();
+  read_dynamics(context, from.child("dynamics"), axis);
+  read_limit(context, from.child("limit"), has_limits, axis);
   return axis;
 }
 
-void read_motor(const LoadContext& context, const sdf::ElementPtr& element, JointDef& joint) {
-  const sdf::ElementPtr motor = explicit_child(element, "tactus:motor");
+void read_motor(const LoadContext& context, const sdf::Element& element, JointDef& joint) {
+  const sdf::Element* motor = element.child("tactus:motor");
   if (!motor) return;
   Attributes attributes(context, *motor);
   const bool linear = joint.kind == JointKind::kPrismatic;
@@ -80,34 +100,33 @@ void read_motor(const LoadContext& context, const sdf::ElementPtr& element, Join
 
 }  // namespace
 
-void add_joint(LoadContext& context, const sdf::Joint& from, const Eigen::Isometry3d& model_pose,
+void add_joint(LoadContext& context, const sdf::Element& from, const Eigen::Isometry3d& model_pose,
                const std::string& scope) {
-  const sdf::ElementPtr element = from.Element();
-  const auto kind = kind_of(from.Type());
+  const JointType& type = type_of(from);
+  const auto& kind = type.kind;
   if (!kind) {
-    context.warn(*element, "has type \"" + element->Get<std::string>("type") + "\", which is not supported: it is left out");
+    context.warn(from, "has type \"" + std::string(type.name) + "\", which is not supported: it is left out");
     return;
   }
-  std::string parent, child;
-  const sdf::Errors no_parent = from.ResolveParentLink(parent), no_child = from.ResolveChildLink(child);
-  for (const auto& errors : {no_parent, no_child})
-    if (!errors.empty()) context.reject(*element, "connects nothing: " + errors.front().Message());
   JointDef joint;
-  joint.name = scope + from.Name();
+  joint.name = scope + std::string(from.value("name"));
   joint.kind = *kind;
-  joint.parent = body_of(context, scope, parent, *element);
-  joint.child = body_of(context, scope, child, *element);
-  if (joint.parent == joint.child) context.reject(*element, "connects a link with itself");
-  joint.anchor_m = (model_pose * context.resolve(from.SemanticPose(), *element, "__model__")).translation();
+  joint.parent = body_of(context, from, "parent");
+  joint.child = body_of(context, from, "child");
+  if (joint.parent == joint.child) {
+    context.warn(from, "connects a link with itself and has no effect");
+    return;
+  }
+  joint.anchor_m = (model_pose * context.resolve(from)).translation();
   const unsigned axes = *kind == JointKind::kUniversal ? 2 : *kind == JointKind::kFixed || *kind == JointKind::kBall ? 0 : 1;
   for (unsigned i = 0; i < axes; ++i) {
-    const sdf::JointAxis* axis = from.Axis(i);
-    if (!axis) context.reject(*element, "lacks its <axis" + std::string(i ? "2" : "") + ">");
-    joint.axes[i] = read_axis(context, *axis, from.Type() != sdf::JointType::CONTINUOUS, model_pose);
+    const sdf::Element* axis = from.child(i ? "axis2" : "axis");
+    if (!axis) context.reject(from, "lacks its <axis" + std::string(i ? "2" : "") + ">");
+    joint.axes[i] = read_axis(context, *axis, type.name != "continuous", model_pose);
   }
   if (axes == 2 && joint.axes[0].axis.cross(joint.axes[1].axis).norm() < 1e-6)
-    context.reject(*element, "has two axes in one direction");
-  read_motor(context, element, joint);
+    context.reject(from, "has two axes in one direction");
+  read_motor(context, from, joint);
   if (joint.parent >= 0 && joint.child >= 0) {
     context.world.no_collision.emplace_back(std::min(joint.parent, joint.child), std::max(joint.parent, joint.child));
     const auto is_static = [&](int b) { return context.world.bodies[static_cast<std::size_t>(b)].is_static; };

@@ -1,53 +1,65 @@
 #include "sim_node/scene/lights.h"
 
+#include <algorithm>
 #include <tactus/light_def_t.hpp>
 #include <tactus/vec3f_t.hpp>
 
 #include "lcmtypes/vectors.h"
-#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/scene/sdf/values.h"
 
 namespace tactus::sim {
 namespace {
 
-double at_least_0(const LoadContext& context, const sdf::Element& element, double value, const char* what) {
-  if (!(value >= 0)) context.reject(element, std::string("has a ") + what + " that is negative or not a number");
-  return std::min(value, 1e6);
+// SDF's defaults (light.sdf).
+constexpr double kDefaultRange_m = 10;
+const sdf::Colour kDefaultDiffuse{{1, 1, 1}, 1}, kDefaultSpecular{Eigen::Vector3f(.1f, .1f, .1f).cast<double>(), 1};
+
+std::int8_t kind_of(const sdf::Element& light) {
+  const std::string_view type = light.value("type", "point");
+  if (type == "point") return light_def_t::POINT;
+  if (type == "spot") return light_def_t::SPOT;
+  if (type == "directional") return light_def_t::DIRECTIONAL;
+  sdf::reject(light, "has type \"" + std::string(type) + "\": there are point, spot and directional");
 }
 
-vec3f_t light_colour(const LoadContext& context, const sdf::Element& element, const ignition::math::Color& c) {
-  const Eigen::Vector3d rgb = to_eigen(c);
-  if (!rgb.allFinite()) context.reject(element, "has a colour that is not finite");
-  return to_vec3f(rgb.cwiseMax(0).cwiseMin(1e3));
+// At least 0; large numbers are cut.
+float number_in(const sdf::Element* owner, const char* name, double missing) {
+  const sdf::Element* given = sdf::child_of(owner, name);
+  const double value = given ? sdf::number_or_infinity(*given) : missing;
+  if (!(value >= 0)) sdf::reject(*given, "= " + std::string(given->text) + " must be 0 or more");
+  return static_cast<float>(std::min(value, 1e6));
+}
+
+// The direction of a spot or directional light in its own frame; a point light has none.
+Eigen::Vector3d direction_of(const sdf::Element& light, bool has_direction) {
+  const Eigen::Vector3d down(0, 0, -1);
+  return has_direction ? sdf::child_vector3(&light, "direction", down) : down;
 }
 
 }  // namespace
 
-void add_light(LoadContext& context, const sdf::Light& light, const Eigen::Isometry3d& parent_pose) {
-  const sdf::Element& e = *light.Element();
-  const Eigen::Isometry3d pose = parent_pose * context.resolve(light.SemanticPose(), e);
-  const Eigen::Vector3d direction = pose.linear() * to_eigen(light.Direction());
-  if (!direction.allFinite() || direction.norm() < 1e-9) context.reject(e, "has no <direction>");
+void add_light(LoadContext& context, const sdf::Element& light, const Eigen::Isometry3d& parent_pose) {
+  const Eigen::Isometry3d pose = parent_pose * context.resolve(light);
   light_def_t def{};
-  def.name = light.Name();
-  def.kind = light.Type() == sdf::LightType::SPOT          ? light_def_t::SPOT
-             : light.Type() == sdf::LightType::DIRECTIONAL ? light_def_t::DIRECTIONAL
-                                                           : light_def_t::POINT;
+  def.name = light.value("name");
+  def.kind = kind_of(light);
+  const Eigen::Vector3d direction = pose.linear() * direction_of(light, def.kind != light_def_t::POINT);
+  if (!direction.allFinite() || direction.norm() < 1e-9) context.reject(light, "has no <direction>");
   def.pose = to_pose(pose);
   def.direction = to_vec3(direction.normalized());
-  def.diffuse = light_colour(context, e, light.Diffuse());
-  def.specular = light_colour(context, e, light.Specular());
-  const auto number = [&](double value, const char* what) {
-    return static_cast<float>(at_least_0(context, e, value, what));
-  };
-  def.range_m = number(light.AttenuationRange(), "range");
-  def.attenuation_constant = number(light.ConstantAttenuationFactor(), "constant attenuation");
-  def.attenuation_linear = number(light.LinearAttenuationFactor(), "linear attenuation");
-  def.attenuation_quadratic = number(light.QuadraticAttenuationFactor(), "quadratic attenuation");
-  def.intensity = number(light.Intensity(), "intensity");
-  def.inner_angle_rad = number(light.SpotInnerAngle().Radian(), "inner angle");
-  def.outer_angle_rad = number(light.SpotOuterAngle().Radian(), "outer angle");
-  def.falloff = number(light.SpotFalloff(), "falloff");
-  def.casts_shadow = light.CastShadows() ? 1 : 0;
+  def.diffuse = to_vec3f(sdf::child_colour(&light, "diffuse").value_or(kDefaultDiffuse).rgb);
+  def.specular = to_vec3f(sdf::child_colour(&light, "specular").value_or(kDefaultSpecular).rgb);
+  const sdf::Element* attenuation = light.child("attenuation");
+  def.range_m = number_in(attenuation, "range", kDefaultRange_m);
+  def.attenuation_constant = number_in(attenuation, "constant", 1);
+  def.attenuation_linear = number_in(attenuation, "linear", 1);
+  def.attenuation_quadratic = number_in(attenuation, "quadratic", 0);
+  def.intensity = number_in(&light, "intensity", 1);
+  const sdf::Element* spot = def.kind == light_def_t::SPOT ? light.child("spot") : nullptr;
+  def.inner_angle_rad = number_in(spot, "inner_angle", 0);
+  def.outer_angle_rad = number_in(spot, "outer_angle", 0);
+  def.falloff = number_in(spot, "falloff", 0);
+  def.casts_shadow = sdf::child_flag(&light, "cast_shadows", false) ? 1 : 0;
   context.world.lights.push_back(def);
 }
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <new>
-#include <sdf/World.hh>
 #include <stdexcept>
 
 #include "sim_node/scene/bodies.h"
 #include "sim_node/scene/lights.h"
-#include "sim_node/scene/sdf/sdf_eigen.h"
-#include "sim_node/scene/sdf/sdf_read.h"
+#include "sim_node/scene/joints.h"
+#include "sim_node/scene/sdf/tree.h"
+#include "sim_node/scene/sdf/values.h"
 #include "sim_node/scene/extensions/tactus_holes.h"
 #include "sim_node/scene/extensions/tactus_looks.h"
 #include "sim_node/scene/extensions/tactus_maps.h"
@@ -21,6 +21,9 @@
 
 namespace tactus::sim {
 namespace {
+
+// SDF's default (world.sdf).
+const Eigen::Vector3d kDefaultGravity_m_s2(0, 0, -9.8);
 
 // Built-in versions of the two models of every Gazebo installation, when the scene does not bring them.
 void add_builtin_models(LoadContext& context) {
@@ -46,11 +49,11 @@ void add_builtin_models(LoadContext& context) {
   }
 }
 
-void read_gravity(LoadContext& context, const sdf::World& world) {
-  const Eigen::Vector3d gravity = to_eigen(world.Gravity());
-  if (!gravity.allFinite() || gravity.norm() > 1e4)
-    context.reject(*world.Element(), "has a <gravity> that is not finite");
-  context.world.gravity_m_s2 = gravity;
+void read_gravity(LoadContext& context, const sdf::Element& world) {
+  const sdf::Element* gravity = world.child("gravity");
+  const Eigen::Vector3d value = gravity ? sdf::vector3(*gravity) : kDefaultGravity_m_s2;
+  if (value.norm() > 1e4) context.reject(*gravity, "= " + std::string(gravity->text) + " is larger than 1e4 m/s^2");
+  context.world.gravity_m_s2 = value;
 }
 
 void sort_no_collision(WorldDef& world) {
@@ -59,27 +62,35 @@ void sort_no_collision(WorldDef& world) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-void read_world(LoadContext& context, const sdf::World* world, const sdf::Model* model, const sdf::ElementPtr& element) {
-  read_materials(context, element);
-  read_looks(context, element);
-  if (world) {
-    read_gravity(context, *world);
-    for (std::uint64_t i = 0; i < world->LightCount(); ++i)
-      add_light(context, *world->LightByIndex(i), Eigen::Isometry3d::Identity());
-    for (std::uint64_t i = 0; i < world->ModelCount(); ++i)
-      add_model(context, *world->ModelByIndex(i), Eigen::Isometry3d::Identity(), "", false, -1);
+// world: the <world>, or the <sdf> of a file with only a model.
+void read_world(LoadContext& context, const sdf::Element& world) {
+  const Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+  read_materials(context, world);
+  read_looks(context, world);
+  if (world.name == "world") {
+    read_gravity(context, world);
+    for (const sdf::Element& light : world.children("light")) add_light(context, light, origin);
+    for (const sdf::Element& model : world.children("model")) add_model(context, model, origin, "", false, -1);
+    for (const sdf::Element& joint : world.children("joint")) add_joint(context, joint, origin, "");
   } else {
-    add_model(context, *model, Eigen::Isometry3d::Identity(), "", false, -1);
+    add_model(context, *world.child("model"), origin, "", false, -1);
   }
   add_builtin_models(context);
   sort_no_collision(context.world);
   if (context.world.lights.empty()) context.world.lights.push_back(sun());
-  read_view(context, world, element);
-  read_tools(context, element);
-  read_holes(context, element);
-  read_settings(context, element);
-  read_maps(context, element);
-  read_profile(context, element);
+  read_view(context, world);
+  read_tools(context, world);
+  read_holes(context, world);
+  read_settings(context, world);
+  read_maps(context, world);
+  read_profile(context, world);
+}
+
+const sdf::Element& world_of(const sdf::Element& root) {
+  if (const sdf::Element* world = root.child("world")) return *world;
+  if (!root.child("model"))
+    throw std::runtime_error(sdf::where(root) + ": there is no <world> and no <model> in it");
+  return root;
 }
 
 }  // namespace
@@ -87,21 +98,23 @@ void read_world(LoadContext& context, const sdf::World* world, const sdf::Model*
 WorldDef load_sdf(const std::filesystem::path& file, std::vector<std::string>& warnings,
                   const LoadOptions& options) try {
   const SdfFiles files(file, warnings, options.folders);
-  const auto root = read_sdf(files);
-  const sdf::World* world = root->WorldByIndex(0);
-  const sdf::Model* model = root->Model();
-  if (!world && !model)
-    throw std::runtime_error(files.where(*root->Element()) + ": there is no <world> and no <model> in it");
+  const sdf::Tree tree(files, warnings);
+  const sdf::Element& world = world_of(tree.root());
+  sdf::Frames frames(world);
   WorldDef def;
-  LoadContext context{files, warnings, def, {}, {}, {}, nullptr};
-  context.confined = options.confined;
-  if (root->WorldCount() > 1) context.warn(*root->WorldByIndex(1)->Element(), "is a second world and has no effect");
-  def.name = world ? world->Name() : model->Name();
+  LoadContext context{files, frames, warnings, def, options.confined};
+  for (const sdf::Element& other : tree.root().children(world.name))
+    if (&other != &world) context.warn(other, "is a second world and has no effect");
+  for (const sdf::Element& other : tree.root().children("model"))
+    if (&other != tree.root().child("model")) context.warn(other, "is a second model and has no effect");
+  def.name = world.name == "world" ? world.value("name") : world.child("model")->value("name");
   def.source_file = file.filename().string();
   def.source_text = files.main_text();
-  read_world(context, world, model, world ? world->Element() : root->Element());
-  warn_unsupported(context, root->Element());
+  read_world(context, world);
+  warn_unsupported(context, tree.root());
   return def;
+} catch (const std::runtime_error& e) {
+  throw std::runtime_error(sdf::one_line(e.what()));
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(file.string() + ": the scene needs more memory than is available: simplify it");
 }

@@ -1,4 +1,4 @@
-// Loads a world from an SDFormat file (1.4 to 1.9) with <tactus:...> elements; docs/scene_format.md lists the
+// Loads a world from an SDFormat file (1.4 to 1.12) with <tactus:...> elements; docs/scene_format.md lists the
 // supported elements.
 #pragma once
 

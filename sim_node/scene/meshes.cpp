@@ -6,7 +6,7 @@
 
 #include "sim_node/scene/meshes/confined_reader.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
-#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/scene/sdf/values.h"
 #include "sim_node/scene/meshes/subdivide.h"
 #include "sim_node/scene/extensions/tactus_materials.h"
 #include "sim_node/scene/meshes/tangents.h"
@@ -65,22 +65,28 @@ TriangleMesh make_display_mesh(const NamedMesh& named, const std::set<int>& mate
 
 }  // namespace
 
-NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element) {
-  NamedMesh named{mesh.Uri(),
-                  context.asset_file(mesh.Uri(), element),
-                  {mesh.Submesh(), mesh.CenterSubmesh(), to_eigen(mesh.Scale())},
+NamedMesh named_mesh(LoadContext& context, const sdf::Element& mesh) {
+  const sdf::Element* uri = mesh.child("uri");
+  if (!uri || uri->text.empty()) context.reject(mesh, "lacks its <uri>");
+  const sdf::Element* submesh = mesh.child("submesh");
+  const sdf::Element* submesh_name = sdf::child_of(submesh, "name");
+  if (submesh && (!submesh_name || submesh_name->text.empty())) context.reject(*submesh, "lacks its <name>");
+  NamedMesh named{std::string(uri->text),
+                  context.asset_file(std::string(uri->text), mesh),
+                  {std::string(submesh_name ? submesh_name->text : ""), sdf::child_flag(submesh, "center", false),
+                   sdf::child_vector3(&mesh, "scale", {1, 1, 1})},
                   nullptr,
                   ""};
   const Eigen::Vector3d& scale = named.selection.scale;
-  if (!scale.allFinite() || (scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
-    context.reject(element, "has a <scale> that is zero or not finite");
+  if ((scale.array() == 0).any() || scale.cwiseAbs().maxCoeff() > 1e6)
+    context.reject(mesh, "has a <scale> that is zero or larger than 1e6");
   std::ostringstream key;
-  key << named.file.string() << '|' << mesh.Submesh() << '|' << mesh.CenterSubmesh() << '|' << scale.transpose();
+  key << named.file.string() << '|' << named.selection.submesh << '|' << named.selection.centre << '|' << scale.transpose();
   named.key = key.str();
   try {
     named.parts = &mesh_parts(context, named.file);
   } catch (const std::exception& e) {
-    context.reject(element, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
+    context.reject(mesh, "names mesh \"" + named.uri + "\", which cannot be read: " + e.what());
   }
   return named;
 }
@@ -95,9 +101,7 @@ const MeshParts& mesh_parts(LoadContext& context, const std::filesystem::path& f
 }
 
 void add_mesh(LoadContext& context, TriangleMesh mesh) {
-  std::size_t corners = mesh.indices.size();
-  for (const TriangleMesh& other : context.world.meshes) corners += other.indices.size();
-  if (corners / 3 > kMaxSceneTriangles)
+  if ((context.mesh_corners += mesh.indices.size()) / 3 > kMaxSceneTriangles)
     throw std::runtime_error("with it the scene has more than " + std::to_string(kMaxSceneTriangles) +
                              " triangles: simplify it, or use fewer sizes of it");
   context.world.meshes.push_back(std::move(mesh));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <sdf/Mesh.hh>
 
 #include "sim_node/scene/sdf/load_context.h"
 #include "sim_node/scene/meshes/mesh_file.h"
@@ -18,8 +17,8 @@ struct NamedMesh {
   std::string key;                   // equal keys refer to the same mesh
 };
 
-// `element`: the <mesh>. Rejects an invalid scale and an unreadable file.
-NamedMesh named_mesh(LoadContext& context, const sdf::Mesh& mesh, const sdf::Element& element);
+// `mesh`: the <mesh>. Rejects an invalid scale and an unreadable file.
+NamedMesh named_mesh(LoadContext& context, const sdf::Element& mesh);
 
 // The content of a geometry file; each file is read once. Throws std::runtime_error with one clause.
 const MeshParts& mesh_parts(LoadContext& context, const std::filesystem::path& file);

@@ -14,7 +14,8 @@ namespace tactus::sim {
 // Adds the option --scene-folder DIR, once for each folder.
 void add_scene_folder_option(sync::Arguments& app, std::vector<std::string>& folders);
 
-// The named folders, then those of the environment variable TACTUS_SCENE_FOLDERS, which a colon separates.
+// The named folders, then those of the environment variable TACTUS_SCENE_FOLDERS, then those of GZ_SIM_RESOURCE_PATH that
+// exist; a colon separates them. Each is there once.
 std::vector<std::filesystem::path> scene_folders(const std::vector<std::string>& named);
 
 }  // namespace tactus::sim

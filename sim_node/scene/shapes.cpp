@@ -1,19 +1,13 @@
 #include "sim_node/scene/shapes.h"
 
-#include <sdf/Box.hh>
-#include <sdf/Capsule.hh>
-#include <sdf/Cylinder.hh>
-#include <sdf/Heightmap.hh>
-#include <sdf/Mesh.hh>
-#include <sdf/Plane.hh>
-#include <sdf/Sphere.hh>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
 #include "lcmtypes/height_map.h"
 #include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"
-#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/scene/sdf/values.h"
 #include "sim_node/model/triangles.h"
 
 namespace tactus::sim {
@@ -22,11 +16,14 @@ namespace {
 // Of all height maps of a scene, each size of one counts: two of the largest, 270 MB.
 constexpr std::size_t kMaxHeightSamples = std::size_t{2} * kMaxHeightMapSide * kMaxHeightMapSide;
 
-int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf::Element& element) {
-  const Eigen::Vector3d size = to_eigen(map.Size()), centre = to_eigen(map.Position());
-  if (!size.allFinite() || (size.array() <= 0).any() || !centre.allFinite())
-    context.reject(element, "has a <size> that is not positive or a <pos> that is not finite");
-  const std::filesystem::path file = context.asset_file(map.Uri(), element);
+int heightfield_index(LoadContext& context, const sdf::Element& element) {
+  const Eigen::Vector3d size = sdf::child_vector3(&element, "size", {1, 1, 1});
+  const Eigen::Vector3d centre = sdf::child_vector3(&element, "pos", {0, 0, 0});
+  if ((size.array() <= 0).any()) context.reject(element, "has a <size> that is not positive");
+  const sdf::Element* named = element.child("uri");
+  const std::string uri(named ? named->text : "");
+  if (uri.empty()) context.reject(element, "lacks its <uri>");
+  const std::filesystem::path file = context.asset_file(uri, element);
   std::ostringstream key;
   key << file.string() << "|height|" << size.transpose() << '|' << centre.transpose();
   const auto [at, is_new] = context.mesh_of.try_emplace(key.str(), static_cast<int>(context.world.heightfields.size()));
@@ -39,7 +36,7 @@ int heightfield_index(LoadContext& context, const sdf::Heightmap& map, const sdf
                                  std::to_string(kMaxHeightSamples) + " samples: use smaller ones, or fewer sizes of one");
       context.world.heightfields.push_back(std::move(field));
     } catch (const std::exception& e) {
-      context.reject(element, "names height image \"" + map.Uri() + "\", which cannot be read: " + e.what());
+      context.reject(element, "names height image \"" + uri + "\", which cannot be read: " + e.what());
     }
   return at->second;
 }
@@ -50,51 +47,62 @@ void require_positive(const LoadContext& context, const sdf::Element& owner, con
     context.reject(owner, "has a size that is zero, negative or not finite: every length must be above 0 m");
 }
 
+constexpr const char* kShapes[] = {"box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap"};
+
+// SDF's defaults for lengths that are missing (cylinder_shape.sdf, capsule_shape.sdf, ...).
+constexpr double kSdfRadius_m = 1, kSdfCapsuleRadius_m = 0.5, kSdfLength_m = 1;
+
+void read_plane(const LoadContext& context, const sdf::Element& plane, ShapeDef& shape) {
+  const sdf::Element* size = plane.child("size");
+  const Eigen::Vector3d normal = sdf::child_vector3(&plane, "normal", {0, 0, 1});
+  if (normal.norm() < 1e-6) context.reject(plane, "has a <normal> without direction");
+  shape.size_m << (size ? sdf::vector2(*size) : Eigen::Vector2d(1, 1)), 1;
+  // Normalized as libignition-math does, so that the world is the same to the bit.
+  shape.pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal / std::sqrt(normal.squaredNorm())));
+}
+
+// Kind, sizes (unused ones are 1) and mesh.
+void read_sizes(LoadContext& context, const sdf::Element& element, ShapeDef& shape) {
+  if (element.name == "box") {
+    shape.kind = ShapeKind::kBox;
+    shape.size_m = sdf::child_vector3(&element, "size", {1, 1, 1});
+  } else if (element.name == "sphere") {
+    shape.kind = ShapeKind::kSphere;
+    shape.size_m = {sdf::child_number(&element, "radius", kSdfRadius_m), 1, 1};
+  } else if (element.name == "cylinder" || element.name == "capsule") {
+    const bool is_cylinder = element.name == "cylinder";
+    shape.kind = is_cylinder ? ShapeKind::kCylinder : ShapeKind::kCapsule;
+    shape.size_m = {sdf::child_number(&element, "radius", is_cylinder ? kSdfRadius_m : kSdfCapsuleRadius_m), 1,
+                    sdf::child_number(&element, "length", kSdfLength_m)};
+  } else if (element.name == "plane") {
+    shape.kind = ShapeKind::kPlane;
+    read_plane(context, element, shape);
+  } else if (element.name == "mesh") {
+    shape.kind = ShapeKind::kMesh;
+    shape.mesh = collision_mesh(context, named_mesh(context, element), element);
+  } else {
+    shape.kind = ShapeKind::kHeightfield;
+    shape.mesh = heightfield_index(context, element);
+  }
+}
+
 }  // namespace
 
-std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Geometry& geometry, const sdf::ElementPtr& owner,
-                                   const Eigen::Isometry3d& pose) {
+const sdf::Element* geometry_of(const sdf::Element& owner) {
+  const sdf::Element* geometry = owner.child("geometry");
+  for (const char* name : kShapes)
+    if (const sdf::Element* found = sdf::child_of(geometry, name)) return found;
+  return nullptr;
+}
+
+std::optional<ShapeDef> read_shape(LoadContext& context, const sdf::Element& owner, const Eigen::Isometry3d& pose) {
+  const sdf::Element* element = geometry_of(owner);
+  if (!owner.child("geometry")) context.warn(owner, "lacks its <geometry> and has no effect");
+  if (!element) return std::nullopt;
   ShapeDef shape;
   shape.pose = pose;
-  const sdf::ElementPtr inside = geometry.Element() ? geometry.Element()->GetFirstElement() : nullptr;
-  const sdf::Element& element = inside ? *inside : *owner;
-  switch (geometry.Type()) {
-    case sdf::GeometryType::BOX:
-      shape.kind = ShapeKind::kBox;
-      shape.size_m = to_eigen(geometry.BoxShape()->Size());
-      break;
-    case sdf::GeometryType::SPHERE:
-      shape.kind = ShapeKind::kSphere;
-      shape.size_m = {geometry.SphereShape()->Radius(), 1, 1};
-      break;
-    case sdf::GeometryType::CYLINDER:
-      shape.kind = ShapeKind::kCylinder;
-      shape.size_m = {geometry.CylinderShape()->Radius(), 1, geometry.CylinderShape()->Length()};
-      break;
-    case sdf::GeometryType::CAPSULE:
-      shape.kind = ShapeKind::kCapsule;
-      shape.size_m = {geometry.CapsuleShape()->Radius(), 1, geometry.CapsuleShape()->Length()};
-      break;
-    case sdf::GeometryType::PLANE: {
-      const Eigen::Vector3d normal = to_eigen(geometry.PlaneShape()->Normal());
-      if (!normal.allFinite() || normal.norm() < 1e-6) context.reject(element, "has a <normal> without direction");
-      shape.kind = ShapeKind::kPlane;
-      shape.size_m = {geometry.PlaneShape()->Size().X(), geometry.PlaneShape()->Size().Y(), 1};
-      shape.pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal));
-      break;
-    }
-    case sdf::GeometryType::MESH:
-      shape.kind = ShapeKind::kMesh;
-      shape.mesh = collision_mesh(context, named_mesh(context, *geometry.MeshShape(), element), element);
-      break;
-    case sdf::GeometryType::HEIGHTMAP:
-      shape.kind = ShapeKind::kHeightfield;
-      shape.mesh = heightfield_index(context, *geometry.HeightmapShape(), element);
-      break;
-    default:
-      return std::nullopt;
-  }
-  require_positive(context, element, shape);
+  read_sizes(context, *element, shape);
+  require_positive(context, *element, shape);
   if (shape.kind == ShapeKind::kSphere) shape.size_m.y() = shape.size_m.z() = 0;
   if (shape.kind == ShapeKind::kCylinder || shape.kind == ShapeKind::kCapsule) shape.size_m.y() = 0;
   if (shape.kind == ShapeKind::kPlane) shape.size_m.z() = 0;

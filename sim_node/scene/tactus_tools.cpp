@@ -94,39 +94,39 @@ Eigen::Matrix3d tool_inertia(const WorldDef& world, const tool_def_t& tool, Eige
   return mass.inertia_kg_m2;
 }
 
-void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
-  Attributes attributes(context, *element);
+void read_tool(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
   tool_def_t tool{};
   tool.name = attributes.required_text("name");
   if (context.body_of.contains(tool.name))
-    context.reject(*element, "has a name that is already in use: choose another");
-  read_tool_shape(context, *element, attributes, tool);
+    context.reject(element, "has a name that is already in use: choose another");
+  read_tool_shape(context, element, attributes, tool);
   tool.mass_kg = attributes.quantity("mass", "kg", 1e-4, 100).value_or(kDefaultMass_kg);
-  tool.device = read_device(context, *element, attributes.text("device").value_or("virtual_hand"));
+  tool.device = read_device(context, element, attributes.text("device").value_or("virtual_hand"));
   tool.loop = attributes.flag("loop").value_or(false) ? 1 : 0;
   tool.material = -1;
   if (const auto material = attributes.text("material")) {
     const auto known = context.material_of.find(*material);
     if (known == context.material_of.end())
-      context.reject(*element, "names material \"" + *material + "\": there is none");
+      context.reject(element, "names material \"" + *material + "\": there is none");
     tool.material = known->second;
   }
   const auto pose = attributes.pose("pose");
   attributes.done();
 
-  for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (child->GetName() != "tactus:waypoint") {
-      context.warn(*child, "is not supported and has no effect");
+  for (const sdf::Element& child : element.children()) {
+    if (child.name != "tactus:waypoint") {
+      context.warn(child, "is not supported and has no effect");
       continue;
     }
-    const waypoint_t waypoint = read_waypoint(context, *child);
+    const waypoint_t waypoint = read_waypoint(context, child);
     if (!tool.waypoints.empty() && !(waypoint.time_s > tool.waypoints.back().time_s))
-      context.reject(*child, "comes at or before the waypoint above it: times must increase");
+      context.reject(child, "comes at or before the waypoint above it: times must increase");
     tool.waypoints.push_back(waypoint);
   }
   tool.waypoint_count = static_cast<std::int32_t>(tool.waypoints.size());
   if (tool.waypoints.empty() && tool.device == "virtual_hand")
-    context.reject(*element, "has no <tactus:waypoint>: the virtual hand needs a path of one or more");
+    context.reject(element, "has no <tactus:waypoint>: the virtual hand needs a path of one or more");
 
   BodyDef body;
   body.name = tool.name;
@@ -140,7 +140,7 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
   context.world.bodies.push_back(body);
   if (is_shaped(tool)) tool.radius_m = bound_m(context.world, tool_shape(tool));
   if (tool.radius_m > kMaxSize_m)
-    context.reject(*element, "extends further than 1 m from its origin: make it smaller");
+    context.reject(element, "extends further than 1 m from its origin: make it smaller");
   BodyDef& held = context.world.bodies.back();
   std::vector<MassRemark> remarks;
   held.inertia_kg_m2 = tool_inertia(context.world, tool, held.centre_of_mass_m, remarks);
@@ -151,9 +151,8 @@ void read_tool(LoadContext& context, const sdf::ElementPtr& element) {
 
 }  // namespace
 
-void read_tools(LoadContext& context, const sdf::ElementPtr& world) {
-  for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
-    if (element->GetName() == "tactus:tool") read_tool(context, element);
+void read_tools(LoadContext& context, const sdf::Element& world) {
+  for (const sdf::Element& element : world.children("tactus:tool")) read_tool(context, element);
 }
 
 }  // namespace tactus::sim

@@ -6,6 +6,6 @@
 namespace tactus::sim {
 
 // Appends a tool and its body for every <tactus:tool> of the world, after all other bodies.
-void read_tools(LoadContext& context, const sdf::ElementPtr& world);
+void read_tools(LoadContext& context, const sdf::Element& world);
 
 }  // namespace tactus::sim

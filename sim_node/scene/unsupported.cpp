@@ -1,19 +1,21 @@
 #include "sim_node/scene/unsupported.h"
 
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "sim_node/scene/extensions/tactus_settings.h"
+#include "sim_node/scene/sdf/values.h"
 
 namespace tactus::sim {
 namespace {
 
-using Names = std::set<std::string>;
+using Names = std::set<std::string, std::less<>>;
 
 // Supported elements and their supported children. A child without its own entry is a leaf.
-const std::map<std::string, Names> kSupported{
+const std::map<std::string, Names, std::less<>> kSupported{
     {"sdf", {"world", "model"}},
-    {"world", {"gravity", "physics", "scene", "gui", "light", "model", "frame", "tactus:material", "tactus:tool",
+    {"world", {"gravity", "physics", "scene", "gui", "light", "model", "joint", "frame", "tactus:material", "tactus:tool",
                "tactus:camera", "tactus:listener", "tactus:profile", "tactus:hole", "tactus:look", "tactus:shader",
                "tactus:pass", "tactus:environment", "tactus:map"}},
     {"physics", {"max_step_size", "real_time_factor", "real_time_update_rate"}},
@@ -26,8 +28,8 @@ const std::map<std::string, Names> kSupported{
     {"frame", {"pose"}},
     {"link", {"pose", "inertial", "collision", "visual", "light", "velocity_decay", "gravity", "self_collide",
               "tactus:surface"}},
-    {"inertial", {"pose", "mass", "inertia"}},
-    {"collision", {"pose", "geometry", "surface", "tactus:surface"}},
+    {"inertial", {"pose", "mass", "inertia", "density"}},
+    {"collision", {"pose", "geometry", "density", "surface", "tactus:surface"}},
     {"surface", {"bounce", "friction"}},
     {"bounce", {"restitution_coefficient"}},
     {"friction", {"ode"}},
@@ -47,7 +49,7 @@ const std::map<std::string, Names> kSupported{
     {"dynamics", {"damping", "friction", "spring_reference", "spring_stiffness"}},
 };
 // Values that have no effect because they match the fixed behaviour.
-const std::map<std::string, Names> kHarmless{
+const std::map<std::string, Names, std::less<>> kHarmless{
     {"enable_wind", {"false", "0"}}, {"kinematic", {"false", "0"}}, {"must_be_base_link", {"false", "0"}},
     {"visualize", {"false", "0"}},   {"light_on", {"true", "1"}},   {"laser_retro", {"0"}},
     {"lighting", {"true", "1"}},     {"double_sided", {"false", "0"}}};
@@ -55,45 +57,42 @@ const std::map<std::string, Names> kHarmless{
 // Fixed step and rate of the simulation: one step per haptic tick.
 constexpr double kStep_s = 0.001, kRate_Hz = 1000;
 
-const Names* children_of(const std::string& parent, const std::string& name) {
-  auto entry = kSupported.find(parent + "/" + name);
+const Names* children_of(std::string_view parent, std::string_view name) {
+  auto entry = kSupported.find(std::string(parent) + "/" + std::string(name));
   if (entry == kSupported.end()) entry = kSupported.find(name);
   return entry == kSupported.end() ? nullptr : &entry->second;
 }
 
 bool harmless(const sdf::Element& element) {
-  const auto entry = kHarmless.find(element.GetName());
-  return entry != kHarmless.end() && element.GetValue() && entry->second.contains(element.GetValue()->GetAsString());
+  const auto entry = kHarmless.find(element.name);
+  return entry != kHarmless.end() && entry->second.contains(element.text);
 }
 
 void check_pace(const LoadContext& context, const sdf::Element& e) {
-  const auto value = [&] { return e.Get<double>(); };
-  if (e.GetName() == "max_step_size" && std::abs(value() - kStep_s) > 1e-9)
-    context.warn(e, "= " + e.GetValue()->GetAsString() + " has no effect: the world is stepped by 0.001 s");
-  if (e.GetName() == "real_time_factor" && std::abs(value() - 1) > 1e-9)
-    context.warn(e, "= " + e.GetValue()->GetAsString() + " has no effect: the world runs in real time");
-  if (e.GetName() == "real_time_update_rate" && value() != 0 && std::abs(value() - kRate_Hz) > 1e-9)
-    context.warn(e, "= " + e.GetValue()->GetAsString() + " has no effect: the world is stepped 1000 times a second");
+  const auto warn = [&](const char* what) { context.warn(e, "= " + std::string(e.text) + " has no effect: " + what); };
+  if (e.name == "max_step_size" && std::abs(sdf::number(e) - kStep_s) > 1e-9) warn("the world is stepped by 0.001 s");
+  if (e.name == "real_time_factor" && std::abs(sdf::number(e) - 1) > 1e-9) warn("the world runs in real time");
+  if (e.name == "real_time_update_rate" && sdf::number(e) != 0 && std::abs(sdf::number(e) - kRate_Hz) > 1e-9)
+    warn("the world is stepped 1000 times a second");
 }
 
-void walk(const LoadContext& context, const sdf::ElementPtr& element, const Names& supported) {
-  for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (!child->GetExplicitlySetInFile() || child == context.camera_sensor) continue;
-    const std::string& name = child->GetName();
-    if (element->GetName() == "world" && is_setting_element(name)) continue;  // handled by tactus_settings.h
-    if (!supported.contains(name)) {
-      if (!harmless(*child)) context.warn(*child, "is not supported and has no effect");
+void walk(const LoadContext& context, const sdf::Element& element, const Names& supported) {
+  for (const sdf::Element& child : element.children()) {
+    if (&child == context.camera_sensor) continue;
+    if (element.name == "world" && is_setting_element(child.name)) continue;  // handled by tactus_settings.h
+    if (!supported.contains(child.name)) {
+      if (!harmless(child)) context.warn(child, "is not supported and has no effect");
       continue;
     }
-    if (element->GetName() == "physics") check_pace(context, *child);
-    if (const Names* next = children_of(element->GetName(), name)) walk(context, child, *next);
+    if (element.name == "physics") check_pace(context, child);
+    if (const Names* next = children_of(element.name, child.name)) walk(context, child, *next);
   }
 }
 
 }  // namespace
 
-void warn_unsupported(const LoadContext& context, const sdf::ElementPtr& root) {
-  walk(context, root, kSupported.at("sdf"));
+void warn_unsupported(const LoadContext& context, const sdf::Element& root) {
+  walk(context, root, kSupported.find("sdf")->second);
 }
 
 }  // namespace tactus::sim

@@ -6,6 +6,6 @@
 namespace tactus::sim {
 
 // Also warns of a step size or rate in <physics> that differs from the fixed one. `root`: <sdf>.
-void warn_unsupported(const LoadContext& context, const sdf::ElementPtr& root);
+void warn_unsupported(const LoadContext& context, const sdf::Element& root);
 
 }  // namespace tactus::sim

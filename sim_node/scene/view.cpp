@@ -2,10 +2,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <sdf/Scene.hh>
 
 #include "sim_node/scene/sdf/attributes.h"
-#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/scene/sdf/values.h"
 #include "sim_node/scene/shapes.h"
 
 namespace tactus::sim {
@@ -33,8 +32,8 @@ std::optional<Eigen::Isometry3d> read_viewpoint(const LoadContext& context, cons
   return position ? look_pose(*position, *at) : pose;
 }
 
-bool read_tactus_camera(LoadContext& context, const sdf::ElementPtr& world) {
-  const sdf::ElementPtr element = explicit_child(world, "tactus:camera");
+bool read_tactus_camera(LoadContext& context, const sdf::Element& world) {
+  const sdf::Element* element = world.child("tactus:camera");
   if (!element) return false;
   Attributes attributes(context, *element);
   const auto place = read_viewpoint(context, *element, attributes);
@@ -45,10 +44,10 @@ bool read_tactus_camera(LoadContext& context, const sdf::ElementPtr& world) {
   return true;
 }
 
-bool read_gui_camera(LoadContext& context, const sdf::ElementPtr& world) {
-  const sdf::ElementPtr pose = explicit_child(explicit_child(explicit_child(world, "gui"), "camera"), "pose");
+bool read_gui_camera(LoadContext& context, const sdf::Element& world) {
+  const sdf::Element* pose = sdf::child_of(sdf::child_of(world.child("gui"), "camera"), "pose");
   if (!pose) return false;
-  context.world.camera = to_eigen(pose->Get<ignition::math::Pose3d>());
+  context.world.camera = sdf::raw_pose(*pose).to_eigen();
   if (!context.world.camera.matrix().allFinite()) context.reject(*pose, "is not finite");
   context.world.camera_fov_rad = 60 * kDeg;  // as in Gazebo's window
   return true;
@@ -57,8 +56,7 @@ bool read_gui_camera(LoadContext& context, const sdf::ElementPtr& world) {
 bool read_camera_sensor(LoadContext& context) {
   if (!context.camera_sensor) return false;
   context.world.camera = context.camera_sensor_pose;
-  const auto fov = explicit_child(explicit_child(context.camera_sensor, "camera"), "horizontal_fov");
-  const double angle = fov ? fov->Get<double>() : 1.047;  // SDF's default
+  const double angle = sdf::child_number(context.camera_sensor->child("camera"), "horizontal_fov", 1.047);  // SDF's default
   context.world.camera_fov_rad = std::min(std::max(angle, kDeg), 170 * kDeg);
   return true;
 }
@@ -80,33 +78,28 @@ void frame_all_bodies(LoadContext& context) {
   context.world.camera_fov_rad = 60 * kDeg;
 }
 
-void read_ambient_light(LoadContext& context, const sdf::World* world, const sdf::ElementPtr& element) {
-  const sdf::ElementPtr scene = explicit_child(element, "scene");
-  const auto colour = [&](const char* name, const ignition::math::Color& given, const Eigen::Vector3d& missing) {
-    const Eigen::Vector3d value = explicit_child(scene, name) ? to_eigen(given) : missing;
-    if (!value.allFinite()) context.reject(*scene, "has a colour that is not finite");
-    return Eigen::Vector3d(value.cwiseMax(0).cwiseMin(1));
-  };
-  const sdf::Scene* given = world ? world->Scene() : nullptr;
+void read_ambient_light(LoadContext& context, const sdf::Element& world) {
+  const sdf::Element* scene = world.child("scene");
   // SDF's defaults (scene.sdf).
-  context.world.ambient = colour("ambient", given ? given->Ambient() : ignition::math::Color(), {0.4, 0.4, 0.4});
-  context.world.background = colour("background", given ? given->Background() : ignition::math::Color(), {0.7, 0.7, 0.7});
+  const auto ambient = sdf::child_colour(scene, "ambient"), background = sdf::child_colour(scene, "background");
+  context.world.ambient = ambient ? ambient->rgb : Eigen::Vector3d(0.4, 0.4, 0.4);
+  context.world.background = background ? background->rgb : Eigen::Vector3d(0.7, 0.7, 0.7);
 }
 
 }  // namespace
 
-void read_view(LoadContext& context, const sdf::World* world, const sdf::ElementPtr& element) {
-  if (!read_tactus_camera(context, element) && !read_gui_camera(context, element) && !read_camera_sensor(context))
+void read_view(LoadContext& context, const sdf::Element& world) {
+  if (!read_tactus_camera(context, world) && !read_gui_camera(context, world) && !read_camera_sensor(context))
     frame_all_bodies(context);
   context.world.listener = context.world.camera;
-  if (const sdf::ElementPtr listener = explicit_child(element, "tactus:listener")) {
+  if (const sdf::Element* listener = world.child("tactus:listener")) {
     Attributes attributes(context, *listener);
     const auto place = read_viewpoint(context, *listener, attributes);
     if (!place) context.reject(*listener, "lacks its pose, or position and look_at");
     context.world.listener = *place;
     attributes.done();
   }
-  read_ambient_light(context, world, element);
+  read_ambient_light(context, world);
 }
 
 }  // namespace tactus::sim

@@ -1,8 +1,6 @@
 #include "sim_node/scene/visuals.h"
 
 #include <algorithm>
-#include <sdf/Material.hh>
-#include <sdf/Visual.hh>
 #include <stdexcept>
 #include <tactus/asset_ref_t.hpp>
 
@@ -12,7 +10,7 @@
 #include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"
 #include "sim_node/scene/materials/pictures.h"
-#include "sim_node/scene/sdf/sdf_eigen.h"
+#include "sim_node/scene/sdf/values.h"
 #include "sim_node/scene/shapes.h"
 #include "sim_node/scene/extensions/tactus_looks.h"
 #include "sync/text/settings.h"
@@ -28,11 +26,7 @@ const std::map<std::string, Eigen::Vector3d> kScripts{
     {"Gazebo/Purple", {0.6, 0.05, 0.6}}, {"Gazebo/Turquoise", {0.05, 0.8, 0.8}}, {"Gazebo/Gold", {0.8, 0.65, 0.1}},
     {"Gazebo/Wood", {0.5, 0.32, 0.17}}};
 
-Eigen::Vector3d colour(const LoadContext& context, const sdf::Element& element, const ignition::math::Color& c) {
-  const Eigen::Vector3d rgb = to_eigen(c);
-  if (!rgb.allFinite()) context.reject(element, "has a colour that is not finite");
-  return rgb.cwiseMax(0).cwiseMin(1);
-}
+constexpr double kPlaceholder_m = 0.1;  // edge of the box that stands for a mesh (design)
 
 // Appearance of a visual as SDF defines it.
 struct Appearance {
@@ -41,19 +35,18 @@ struct Appearance {
   LookAttributes look;
 };
 
-
 // The maps of <pbr>, for both of its workflows.
-LookAttributes read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
+LookAttributes read_pbr(LoadContext& context, const sdf::Element& material) {
   LookAttributes words;
-  const sdf::ElementPtr pbr = explicit_child(material, "pbr");
-  sdf::ElementPtr workflow = explicit_child(pbr, "metal");
-  if (!workflow) workflow = explicit_child(pbr, "specular");
+  const sdf::Element* pbr = material.child("pbr");
+  const sdf::Element* workflow = sdf::child_of(pbr, "metal");
+  if (!workflow) workflow = sdf::child_of(pbr, "specular");
   const auto picture = [&](const char* name, PictureUse use) -> std::optional<std::int64_t> {
-    const sdf::ElementPtr element = explicit_child(workflow, name);
-    if (!element) return std::nullopt;
-    const std::string uri = element->Get<std::string>();
+    const sdf::Element* element = sdf::child_of(workflow, name);
+    if (!element || element->text.empty()) return std::nullopt;
+    const std::string uri(element->text);
     // Third-party worlds name pictures that are on remote servers.
-    if (context.files.find(uri, element->FilePath()).empty()) {
+    if (context.files.find(uri, element->source->file).empty()) {
       context.warn(*element, "names \"" + uri + "\", which is not found: drawn without it");
       return std::nullopt;
     }
@@ -64,51 +57,52 @@ LookAttributes read_pbr(LoadContext& context, const sdf::ElementPtr& material) {
   return words;
 }
 
-void read_material(LoadContext& context, const sdf::Visual& from, Appearance& a) {
-  const sdf::ElementPtr material = explicit_child(from.Element(), "material");
-  if (!material || !from.Material()) return;
-  const sdf::Material& m = *from.Material();
-  const auto given = [&](const char* name) { return explicit_child(material, name) != nullptr; };
-
-  if (const sdf::ElementPtr script = explicit_child(material, "script")) {
-    const auto known = kScripts.find(m.ScriptName());
-    a.coloured = true;
-    if (known != kScripts.end())
-      a.def.ambient = a.def.diffuse = known->second;
-    else if (!given("diffuse"))
-      context.warn(*script, "names \"" + m.ScriptName() + "\", whose colour is unknown: shown in grey");
-  }
-  a.coloured = a.coloured || given("diffuse") || given("ambient");
-  if (given("diffuse")) a.def.diffuse = a.def.ambient = colour(context, *material, m.Diffuse());
-  if (given("ambient")) a.def.ambient = colour(context, *material, m.Ambient());
-  if (given("specular")) a.def.specular = colour(context, *material, m.Specular());
-  if (given("emissive")) a.def.emissive = colour(context, *material, m.Emissive());
-  if (given("diffuse") && m.Diffuse().A() < 1) a.def.alpha *= std::clamp(static_cast<double>(m.Diffuse().A()), 0.0, 1.0);
-  if (const sdf::ElementPtr shininess =
-          explicit_child(material, "shininess")) {  // of SDF 1.10; libsdformat 12 passes it on as text
-    try {
-      a.def.shininess = std::clamp(sync::parse_quantity(shininess->GetValue()->GetAsString(), ""), 1.0, 1e4);
-    } catch (const std::invalid_argument& e) {
-      context.reject(*shininess, std::string("is not a number: ") + e.what());
-    }
-  }
-  a.look.add(read_pbr(context, material));
+void read_script(const LoadContext& context, const sdf::Element& material, Appearance& a) {
+  const sdf::Element* script = material.child("script");
+  if (!script) return;
+  const sdf::Element* named = script->child("name");
+  const std::string name(named ? named->text : "");
+  const auto known = kScripts.find(name);
+  a.coloured = true;
+  if (known != kScripts.end())
+    a.def.ambient = a.def.diffuse = known->second;
+  else if (!material.child("diffuse"))
+    context.warn(*script, "names \"" + name + "\", whose colour is unknown: shown in grey");
 }
 
-Appearance read_appearance(LoadContext& context, const sdf::Visual& from, int body, int material) {
+void read_material(LoadContext& context, const sdf::Element& visual, Appearance& a) {
+  const sdf::Element* material = visual.child("material");
+  if (!material) return;
+  read_script(context, *material, a);
+  const auto diffuse = sdf::child_colour(material, "diffuse"), ambient = sdf::child_colour(material, "ambient");
+  const auto specular = sdf::child_colour(material, "specular"), emissive = sdf::child_colour(material, "emissive");
+  a.coloured = a.coloured || diffuse || ambient;
+  if (diffuse) a.def.diffuse = a.def.ambient = diffuse->rgb;
+  if (ambient) a.def.ambient = ambient->rgb;
+  if (specular) a.def.specular = specular->rgb;
+  if (emissive) a.def.emissive = emissive->rgb;
+  if (diffuse) a.def.alpha *= diffuse->alpha;
+  if (const sdf::Element* shininess = material->child("shininess"))  // of SDF 1.10
+    a.def.shininess = std::clamp(sdf::number(*shininess), 1.0, 1e4);
+  a.look.add(read_pbr(context, *material));
+}
+
+Appearance read_appearance(LoadContext& context, const sdf::Element& visual, int body, int material) {
   Appearance a;
-  a.def.shape.name = from.Name(), a.def.shape.body = body, a.def.shape.material = material;
-  a.def.alpha = std::clamp(1.0 - static_cast<double>(from.Transparency()), 0.0, 1.0);
-  if (const sdf::ElementPtr look = explicit_child(from.Element(), "tactus:look"))
+  a.def.shape.name = visual.value("name"), a.def.shape.body = body, a.def.shape.material = material;
+  // In single precision, as SDF defines it.
+  const auto transparency = static_cast<float>(sdf::child_number(&visual, "transparency", 0));
+  a.def.alpha = std::clamp(1.0 - static_cast<double>(transparency), 0.0, 1.0);
+  if (const sdf::Element* look = visual.child("tactus:look"))
     a.look = read_visual_look(context, *look);
-  read_material(context, from, a);
+  read_material(context, visual, a);
   return a;
 }
 
 // A colour map without a colour is shown unchanged.
 void complete_appearance(LoadContext& context, Appearance& a) {
   if (!a.coloured && a.look.colour_map.value_or(0) != 0) a.def.diffuse = a.def.ambient = Eigen::Vector3d::Ones();
-  a.def.look = look_index(context.world, a.look);
+  a.def.look = look_index(context, a.look);
 }
 
 // A picture that a mesh file names or contains. Empty, with a warning, when it is missing, because files are often
@@ -162,8 +156,8 @@ bool same(const VisualDef& a, const VisualDef& b) {
 }
 
 // Number of subdivisions that the visual requests.
-int read_display(const LoadContext& context, const sdf::ElementPtr& visual) {
-  const sdf::ElementPtr display = explicit_child(visual, "tactus:display");
+int read_display(const LoadContext& context, const sdf::Element& visual) {
+  const sdf::Element* display = visual.child("tactus:display");
   if (!display) return 0;
   Attributes attributes(context, *display);
   const double times = attributes.required_quantity("subdivide", "1", 0, 6);
@@ -172,15 +166,33 @@ int read_display(const LoadContext& context, const sdf::ElementPtr& visual) {
   return static_cast<int>(times);
 }
 
-void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance appearance, int subdivide) {
-  const sdf::ElementPtr inside = visual.Geom()->Element()->GetFirstElement();
-  const sdf::Element& element = inside ? *inside : *visual.Element();
-  const NamedMesh named = named_mesh(context, *visual.Geom()->MeshShape(), element);
+// A visual whose mesh is not there: a file that its author has, or one on a server. False when the mesh is there.
+bool add_placeholder(LoadContext& context, const sdf::Element& mesh, const Appearance& appearance) {
+  const sdf::Element* uri = mesh.child("uri");
+  if (!uri || uri->text.empty() || !context.files.find(std::string(uri->text), mesh.source->file).empty()) return false;
+  context.warn(mesh, "names \"" + std::string(uri->text) +
+                         "\", which is not found: a magenta box is shown in its place; put the file beside the scene file");
+  VisualDef box = appearance.def;
+  box.shape.kind = ShapeKind::kBox;
+  box.shape.size_m.setConstant(kPlaceholder_m);
+  box.ambient = box.diffuse = Eigen::Vector3d(1, 0, 1);
+  box.emissive = Eigen::Vector3d(0.5, 0, 0.5);  // visible without light
+  box.specular.setZero();
+  box.alpha = 1;
+  box.look = -1;
+  context.placeholders.insert(context.world.visuals.size());
+  context.world.visuals.push_back(box);
+  return true;
+}
+
+void add_mesh_visual(LoadContext& context, const sdf::Element& element, Appearance appearance, int subdivide) {
+  if (add_placeholder(context, element, appearance)) return;
+  const NamedMesh named = named_mesh(context, element);
   ShapeDef& shape = appearance.def.shape;
   shape.kind = ShapeKind::kMesh;
   if (shape.material < 0) shape.material = material_of_file(context, named, -1);
   LookAttributes file_look;
-  if (!named.parts->look.empty()) file_look = read_visual_look(context, *element_of("tactus:look", named.parts->look, named.file));
+  if (!named.parts->look.empty()) file_look = read_visual_look(context, element_of("tactus:look", named.parts->look, named.file)->element);
 
   // Materials with equal appearance are merged.
   std::set<int> seen;
@@ -204,22 +216,20 @@ void add_mesh_visual(LoadContext& context, const sdf::Visual& visual, Appearance
 
 }  // namespace
 
-void add_visuals(LoadContext& context, const sdf::Link& link, int body, int material) {
-  for (std::uint64_t i = 0; i < link.VisualCount(); ++i) {
-    const sdf::Visual& visual = *link.VisualByIndex(i);
-    const sdf::ElementPtr element = visual.Element();
-    const Eigen::Isometry3d pose = context.resolve(visual.SemanticPose(), *element);
-    const int subdivide = read_display(context, element);
+void add_visuals(LoadContext& context, const sdf::Element& link, int body, int material) {
+  for (const sdf::Element& visual : link.children("visual")) {
+    const Eigen::Isometry3d pose = context.resolve(visual);
+    const int subdivide = read_display(context, visual);
     Appearance appearance = read_appearance(context, visual, body, material);
-    if (visual.Geom()->Type() == sdf::GeometryType::MESH) {
+    const sdf::Element* geometry = geometry_of(visual);
+    if (geometry && geometry->name == "mesh") {
       appearance.def.shape.pose = pose;
-      add_mesh_visual(context, visual, std::move(appearance), subdivide);
+      add_mesh_visual(context, *geometry, std::move(appearance), subdivide);
       continue;
     }
     if (subdivide > 0)
-      context.reject(*element,
-                     "has a subdivide for another shape than a <mesh>: only a <mesh> has triangles to divide");
-    const auto shape = read_shape(context, *visual.Geom(), element, pose);
+      context.reject(visual, "has a subdivide for another shape than a <mesh>: only a <mesh> has triangles to divide");
+    const auto shape = read_shape(context, visual, pose);
     if (!shape) continue;
     const ShapeDef named = appearance.def.shape;
     appearance.def.shape = *shape;

@@ -28,7 +28,7 @@ QUARANTINE = [
     (r"(EGL|GL|GLES\d|epoxy|gbm|X11)(/|\.h)", r"visual_node/(devices|gl|scene_view|frame)/",
      "EGL and GL are used in the drawing folders of visual_node only"),
     (r"EGL/|epoxy/egl", r"visual_node/devices/", "EGL is used in visual_node/devices only"),
-    (r"(sdf|gz|ignition)/", r"sim_node/scene/", "libsdformat is used in sim_node/scene only"),
+    (r"(sdf|gz|ignition)/", r"tests/", "libsdformat is used in tests only"),
     (r"assimp/", r"sim_node/scene/", "assimp is used in sim_node/scene only"),
     (r"(pango|harfbuzz|fontconfig|ft2build)", r"visual_node/text/typeset/", "Pango and its fonts are used in visual_node/text/typeset only"),
     (r"(portaudio|alsa)", r"audio_node/devices/", "PortAudio and ALSA are used in audio_node/devices only"),

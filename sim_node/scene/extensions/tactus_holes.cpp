@@ -40,12 +40,11 @@ HoleDef read_hole(const LoadContext& context, const sdf::Element& element) {
 
 }  // namespace
 
-void read_holes(LoadContext& context, const sdf::ElementPtr& world) {
-  for (auto element = world->GetFirstElement(); element; element = element->GetNextElement()) {
-    if (element->GetName() != "tactus:hole") continue;
+void read_holes(LoadContext& context, const sdf::Element& world) {
+  for (const sdf::Element& element : world.children("tactus:hole")) {
     if (context.world.holes.size() >= kMaxHoles)
-      context.reject(*element, "is one too many: a game has at most " + std::to_string(kMaxHoles) + " holes");
-    context.world.holes.push_back(read_hole(context, *element));
+      context.reject(element, "is one too many: a game has at most " + std::to_string(kMaxHoles) + " holes");
+    context.world.holes.push_back(read_hole(context, element));
   }
 }
 

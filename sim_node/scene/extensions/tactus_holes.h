@@ -6,6 +6,6 @@
 namespace tactus::sim {
 
 // Call after the bodies have been read.
-void read_holes(LoadContext& context, const sdf::ElementPtr& world);
+void read_holes(LoadContext& context, const sdf::Element& world);
 
 }  // namespace tactus::sim

@@ -211,10 +211,9 @@ void LookAttributes::add(const LookAttributes& others) {
   if (!uniforms) uniforms = others.uniforms;
 }
 
-void read_looks(LoadContext& context, const sdf::ElementPtr& world) {
+void read_looks(LoadContext& context, const sdf::Element& world) {
   const auto each = [&](const char* name, void (*read)(LoadContext&, const sdf::Element&)) {
-    for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
-      if (element->GetName() == name) read(context, *element);
+    for (const sdf::Element& element : world.children(name)) read(context, element);
   };
   each("tactus:shader", read_shader);  // before the elements that name shaders
   each("tactus:look", read_look);
@@ -231,7 +230,7 @@ LookAttributes read_visual_look(LoadContext& context, const sdf::Element& elemen
   return look;
 }
 
-int look_index(WorldDef& world, const LookAttributes& attributes) {
+int look_index(LoadContext& context, const LookAttributes& attributes) {
   if (attributes.empty()) return -1;
   look_t look{};
   look.colour_map = attributes.colour_map.value_or(0), look.normal_map = attributes.normal_map.value_or(0);
@@ -247,14 +246,13 @@ int look_index(WorldDef& world, const LookAttributes& attributes) {
       look.uniforms.empty())
     return -1;
   const auto bytes = sync::encode(look);
-  for (std::size_t i = 0; i < world.looks.size(); ++i) {
-    look_t other = world.looks[i];
-    other.name.clear();
-    if (sync::encode(other) == bytes) return static_cast<int>(i);
-  }
-  look.name = attributes.name.empty() ? "look " + std::to_string(world.looks.size()) : attributes.name;
-  world.looks.push_back(look);
-  return static_cast<int>(world.looks.size()) - 1;
+  auto& looks = context.world.looks;
+  const auto [at, is_new] =
+      context.look_index_of.try_emplace(std::string(bytes.begin(), bytes.end()), static_cast<int>(looks.size()));
+  if (!is_new) return at->second;
+  look.name = attributes.name.empty() ? "look " + std::to_string(looks.size()) : attributes.name;
+  looks.push_back(look);
+  return at->second;
 }
 
 }  // namespace tactus::sim

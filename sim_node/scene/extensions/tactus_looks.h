@@ -23,12 +23,12 @@ struct LookAttributes {
 
 // Reads the shaders, looks, passes and environment of <world>. Rejects invalid values, and warns of a shader that
 // belongs neither to the scene nor to visual_node.
-void read_looks(LoadContext& context, const sdf::ElementPtr& world);
+void read_looks(LoadContext& context, const sdf::Element& world);
 
 // Reads the <tactus:look> of a visual: its own attributes, and those of the named look of the world.
 LookAttributes read_visual_look(LoadContext& context, const sdf::Element& element);
 
 // Index of that look in the world, without duplicates; -1: empty look.
-int look_index(WorldDef& world, const LookAttributes& attributes);
+int look_index(LoadContext& context, const LookAttributes& attributes);
 
 }  // namespace tactus::sim

@@ -65,12 +65,11 @@ map_def_t read_map(const LoadContext& context, const sdf::Element& element) {
 
 }  // namespace
 
-void read_maps(LoadContext& context, const sdf::ElementPtr& world) {
-  for (auto element = world->GetFirstElement(); element; element = element->GetNextElement()) {
-    if (element->GetName() != "tactus:map") continue;
+void read_maps(LoadContext& context, const sdf::Element& world) {
+  for (const sdf::Element& element : world.children("tactus:map")) {
     if (context.world.maps.size() >= kMaxMaps)
-      context.reject(*element, "is one too many: a scene has at most " + std::to_string(kMaxMaps) + " maps");
-    context.world.maps.push_back(read_map(context, *element));
+      context.reject(element, "is one too many: a scene has at most " + std::to_string(kMaxMaps) + " maps");
+    context.world.maps.push_back(read_map(context, element));
   }
 }
 

@@ -7,6 +7,6 @@ namespace tactus::sim {
 
 // Rejects a setting that the node does not have, that is not a number or that cannot be changed at run time. Checks
 // only the form of the variable, because its process defines the variables at run time.
-void read_maps(LoadContext& context, const sdf::ElementPtr& world);
+void read_maps(LoadContext& context, const sdf::Element& world);
 
 }  // namespace tactus::sim

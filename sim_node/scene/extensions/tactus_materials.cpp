@@ -114,24 +114,23 @@ int find_material(const LoadContext& context, const sdf::Element& element, const
 int define_material(LoadContext& context, const Properties& properties, const std::filesystem::path& file) {
   const auto base = properties.find("base");
   if (base != properties.end() && properties.size() == 1)
-    return find_material(context, *element_of("tactus:material", properties, file), base->second);
+    return find_material(context, element_of("tactus:material", properties, file)->element, base->second);
   Properties named = properties;
   named["name"] = file.filename().string();
   if (context.material_of.contains(named["name"])) named["name"] = file.string();
-  read_material(context, *element_of("tactus:material", named, file));
+  read_material(context, element_of("tactus:material", named, file)->element);
   return context.material_of.at(named["name"]);
 }
 
-void read_materials(LoadContext& context, const sdf::ElementPtr& world) {
+void read_materials(LoadContext& context, const sdf::Element& world) {
   context.world.materials = builtin_materials();
   for (const material_def_t& material : context.world.materials)
     context.material_of[material.name] = static_cast<int>(context.material_of.size());
-  for (auto element = world->GetFirstElement(); element; element = element->GetNextElement())
-    if (element->GetName() == "tactus:material") read_material(context, *element);
+  for (const sdf::Element& element : world.children("tactus:material")) read_material(context, element);
 }
 
-int surface_material(const LoadContext& context, const sdf::ElementPtr& element, int inherited) {
-  const sdf::ElementPtr surface = explicit_child(element, "tactus:surface");
+int surface_material(const LoadContext& context, const sdf::Element* element, int inherited) {
+  const sdf::Element* surface = sdf::child_of(element, "tactus:surface");
   if (!surface) return inherited;
   Attributes attributes(context, *surface);
   const std::string name = attributes.required_text("material");

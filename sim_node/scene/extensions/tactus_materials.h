@@ -8,13 +8,13 @@
 namespace tactus::sim {
 
 // Fills world.materials. Rejects a new material that lacks a value and names no base.
-void read_materials(LoadContext& context, const sdf::ElementPtr& world);
+void read_materials(LoadContext& context, const sdf::Element& world);
 
 // Index of the material that a mesh file names: an existing one if only `base` is given, else a new one with the
 // given changes.
 int define_material(LoadContext& context, const Properties& properties, const std::filesystem::path& file);
 
-// Index of the material that <tactus:surface material="..."/> in `element` names, else `inherited`.
-int surface_material(const LoadContext& context, const sdf::ElementPtr& element, int inherited);
+// Index of the material that <tactus:surface material="..."/> in `element` names, else `inherited`. element: may be nullptr.
+int surface_material(const LoadContext& context, const sdf::Element* element, int inherited);
 
 }  // namespace tactus::sim

@@ -11,7 +11,7 @@
 namespace tactus::sim {
 namespace {
 
-std::string escaped(const std::string& text) {
+std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) switch (c) {
       case '&': out += "&amp;"; break;
@@ -26,9 +26,9 @@ std::string escaped(const std::string& text) {
 // The start tag in the syntax of a profile.
 std::string tag(const std::string& name, const sdf::Element& element) {
   std::string text = "<" + name;
-  for (const auto& attribute : element.GetAttributes())
-    if (const std::string key = attribute->GetKey(); !key.starts_with("xmlns"))
-      text += " " + key + "=\"" + escaped(attribute->GetAsString()) + "\"";
+  for (const sdf::Attribute& attribute : element.attributes)
+    if (!attribute.name.starts_with("xmlns"))
+      text += " " + std::string(attribute.name) + "=\"" + escaped(attribute.value) + "\"";
   return text;
 }
 
@@ -60,7 +60,7 @@ void check_names(const LoadContext& context, const sdf::Element& element, const 
 }
 
 void reject_text(const LoadContext& context, const sdf::Element& element) {
-  if (element.GetValue() && !element.GetValue()->GetAsString().empty())
+  if (!element.text.empty())
     context.reject(element, "has text in it, which has no meaning here: remove it");
 }
 
@@ -73,44 +73,43 @@ sync::Profile parse_checked(const LoadContext& context, const sdf::Element& elem
   }
 }
 
-std::string from_file(LoadContext& context, const sdf::ElementPtr& element) {
-  Attributes attributes(context, *element);
-  const auto file = context.asset_file(attributes.required_text("file"), *element);
+std::string from_file(LoadContext& context, const sdf::Element& element) {
+  Attributes attributes(context, element);
+  const auto file = context.asset_file(attributes.required_text("file"), element);
   attributes.done();
-  if (element->GetFirstElement())
-    context.reject(*element, "names a file and holds <tactus:degrade> too: choose one");
+  if (element.first)
+    context.reject(element, "names a file and holds <tactus:degrade> too: choose one");
   try {
     const sync::ProfileInForce profile = sync::read_profile_file(file.string());
-    check_names(context, *element, *profile.parsed, file.filename().string());
+    check_names(context, element, *profile.parsed, file.filename().string());
     return profile.text;
   } catch (const std::invalid_argument& e) {
-    context.reject(*element, std::string("is invalid: ") + e.what());
+    context.reject(element, std::string("is invalid: ") + e.what());
   }
 }
 
 }  // namespace
 
-void read_profile(LoadContext& context, const sdf::ElementPtr& world) {
-  const sdf::ElementPtr element = explicit_child(world, "tactus:profile");
+void read_profile(LoadContext& context, const sdf::Element& world) {
+  const sdf::Element* element = world.child("tactus:profile");
   if (!element) return;
-  for (auto other = element->GetNextElement("tactus:profile"); other;
-       other = other->GetNextElement("tactus:profile"))
-    context.reject(*other, "is a second profile: a scene has one, with any number of <tactus:degrade>");
-  if (element->HasAttribute("file")) {
-    context.world.profile = from_file(context, element);
+  for (const sdf::Element& other : world.children("tactus:profile"))
+    if (&other != element) context.reject(other, "is a second profile: a scene has one, with any number of <tactus:degrade>");
+  if (element->attribute("file")) {
+    context.world.profile = from_file(context, *element);
     return;
   }
   reject_text(context, *element);
   parse_checked(context, *element, tag("profile", *element) + "/>");
   std::string rules;
-  for (auto child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (child->GetName() != "tactus:degrade")
-      context.reject(*child, "is not known in a profile: it holds <tactus:degrade>");
-    const std::string rule = tag("degrade", *child) + "/>";
-    reject_text(context, *child);
-    if (child->GetFirstElement())
-      context.reject(*child->GetFirstElement(), "is inside a <tactus:degrade>, which has only attributes");
-    check_names(context, *child, parse_checked(context, *child, "<profile>" + rule + "</profile>"), "");
+  for (const sdf::Element& child : element->children()) {
+    if (child.name != "tactus:degrade")
+      context.reject(child, "is not known in a profile: it holds <tactus:degrade>");
+    const std::string rule = tag("degrade", child) + "/>";
+    reject_text(context, child);
+    if (child.first)
+      context.reject(*child.first, "is inside a <tactus:degrade>, which has only attributes");
+    check_names(context, child, parse_checked(context, child, "<profile>" + rule + "</profile>"), "");
     rules += "  " + rule + "\n";
   }
   context.world.profile = tag("profile", *element) + ">\n" + rules + "</profile>\n";

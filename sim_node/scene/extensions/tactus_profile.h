@@ -6,6 +6,6 @@
 namespace tactus::sim {
 
 // Fills WorldDef::profile with its XML in the syntax of sync/degradation. Errors name the line.
-void read_profile(LoadContext& context, const sdf::ElementPtr& world);
+void read_profile(LoadContext& context, const sdf::Element& world);
 
 }  // namespace tactus::sim

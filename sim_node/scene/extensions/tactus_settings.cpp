@@ -27,22 +27,22 @@ void check(const LoadContext& context, const sdf::Element& element, const settin
 
 }  // namespace
 
-bool is_setting_element(const std::string& name) { return name.starts_with(kPrefix) && name.ends_with("_node"); }
+bool is_setting_element(std::string_view name) { return name.starts_with(kPrefix) && name.ends_with("_node"); }
 
-void read_settings(LoadContext& context, const sdf::ElementPtr& world) {
-  for (auto element = world->GetFirstElement(); element; element = element->GetNextElement()) {
-    if (!is_setting_element(element->GetName())) continue;
-    const std::string node = element->GetName().substr(kPrefix.size());
+void read_settings(LoadContext& context, const sdf::Element& world) {
+  for (const sdf::Element& element : world.children()) {
+    if (!is_setting_element(element.name)) continue;
+    const std::string node(element.name.substr(kPrefix.size()));
     const bool known = std::any_of(kAllSettings.begin(), kAllSettings.end(),
                                    [&](const NodeSettingRow& row) { return node == row.node; });
-    if (!known) context.warn(*element, "is of a node that is not in this build: passed on unchecked");
-    for (const auto& attribute : element->GetAttributes()) {
-      if (attribute->GetKey().starts_with("xmlns")) continue;
+    if (!known) context.warn(element, "is of a node that is not in this build: passed on unchecked");
+    for (const sdf::Attribute& attribute : element.attributes) {
+      if (attribute.name.starts_with("xmlns")) continue;
       setting_t setting{};
       setting.node = node;
-      setting.name = attribute->GetKey();
-      setting.value = attribute->GetAsString();
-      if (known) check(context, *element, setting);
+      setting.name = attribute.name;
+      setting.value = attribute.value;
+      if (known) check(context, element, setting);
       context.world.settings.push_back(setting);
     }
   }

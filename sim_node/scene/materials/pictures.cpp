@@ -80,10 +80,13 @@ std::int64_t add_image(WorldDef& world, sync::Asset image) {
 std::int64_t picture_of(LoadContext& context, const sdf::Element& element, const std::string& what,
                         const std::string& uri, PictureUse use) {
   const std::filesystem::path file = context.asset_file(uri, element);
+  const auto [at, is_new] =
+      context.picture_of_file.try_emplace(file.string() + (use == PictureUse::kColour ? "|colour" : "|directions"), 0);
+  if (!is_new) return at->second;
   try {
     sync::Asset image{asset_ref_t::IMAGE, file.filename().string(), read_image_file(file)};
     check_picture(image.bytes, use);
-    return add_image(context.world, std::move(image));
+    return at->second = add_image(context.world, std::move(image));
   } catch (const std::exception& e) {
     context.reject(element, "names " + what + " \"" + uri + "\", which cannot be read: " + e.what());
   }

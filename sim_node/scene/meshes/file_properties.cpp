@@ -2,13 +2,13 @@
 
 namespace tactus::sim {
 
-sdf::ElementPtr element_of(const std::string& name, const Properties& properties,
-                           const std::filesystem::path& file) {
-  auto element = std::make_shared<sdf::Element>();
-  element->SetName(name);
-  element->SetFilePath(file.string());
-  for (const auto& [key, value] : properties) element->AddAttribute(key, "string", value, false, "");
-  return element;
+std::unique_ptr<const FileElement> element_of(const std::string& name, const Properties& properties,
+                                              const std::filesystem::path& file) {
+  auto made = std::make_unique<FileElement>(FileElement{name, {file, file.string(), 0}, {}});
+  made->element.name = made->name;
+  made->element.source = &made->source;
+  for (const auto& [key, value] : properties) made->element.attributes.push_back({key, sdf::trimmed(value)});
+  return made;
 }
 
 }  // namespace tactus::sim

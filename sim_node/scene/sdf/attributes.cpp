@@ -10,8 +10,9 @@ namespace tactus::sim {
 
 std::optional<std::string> Attributes::text(const std::string& name) {
   read_names_.insert(name);
-  if (!element_.HasAttribute(name)) return std::nullopt;
-  return element_.GetAttribute(name)->GetAsString();
+  const sdf::Attribute* attribute = element_.attribute(name);
+  if (!attribute) return std::nullopt;
+  return std::string(attribute->value);
 }
 
 std::string Attributes::required_text(const std::string& name) {
@@ -98,10 +99,10 @@ std::optional<Eigen::Isometry3d> Attributes::pose(const std::string& name) {
 }
 
 void Attributes::done() const {
-  for (const auto& attribute : element_.GetAttributes())
-    if (!read_names_.contains(attribute->GetKey()) && !attribute->GetKey().starts_with("xmlns"))
+  for (const sdf::Attribute& attribute : element_.attributes)
+    if (!read_names_.contains(attribute.name) && !attribute.name.starts_with("xmlns"))
       context_.reject(element_,
-                      "has no attribute \"" + attribute->GetKey() + "\": docs/scene_format.md lists those it has");
+                      "has no attribute \"" + std::string(attribute.name) + "\": docs/scene_format.md lists those it has");
 }
 
 }  // namespace tactus::sim

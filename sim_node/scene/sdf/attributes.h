@@ -1,6 +1,7 @@
 // Reads the attributes of a <tactus:...> element with their units; errors name the line.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <set>
 
@@ -34,7 +35,7 @@ class Attributes {
 
   const LoadContext& context_;
   const sdf::Element& element_;
-  std::set<std::string> read_names_;
+  std::set<std::string, std::less<>> read_names_;
 };
 
 }  // namespace tactus::sim

@@ -1,16 +1,18 @@
 // Context of the scene loader: the world under construction, and error and warning messages for an element.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
-#include <sdf/Element.hh>
-#include <sdf/SemanticPose.hh>
-
-#include "sim_node/scene/sdf/sdf_files.h"
 #include "sim_node/model/world_def.h"
+#include "sim_node/scene/sdf/element.h"
+#include "sim_node/scene/sdf/frames.h"
+#include "sim_node/scene/sdf/sdf_files.h"
 #include "sync/pictures/confined_pictures.h"
 
 namespace tactus::sim {
@@ -20,20 +22,26 @@ struct LookAttributes;
 
 struct LoadContext {
   const SdfFiles& files;
+  sdf::Frames& frames;
   std::vector<std::string>& warnings;
   WorldDef& world;
-  std::map<std::string, int> body_of;      // scoped name -> index
-  std::map<std::string, int> mesh_of;      // file, submesh and scale -> index
-  std::map<std::string, int> material_of;  // name -> index
-  sdf::ElementPtr camera_sensor;           // the first one found: used when the scene names no camera
+  bool confined = true;                    // geometry files are read in a process of their own
+  std::map<std::string, int> body_of = {};      // scoped name -> index
+  std::unordered_map<const sdf::Element*, int> body_of_link = {};
+  std::map<std::string, int> mesh_of = {};      // file, submesh and scale -> index
+  std::size_t mesh_corners = 0;                 // of all meshes
+  std::map<std::string, int> material_of = {};  // name -> index
+  const sdf::Element* camera_sensor = nullptr;  // the first one found: used when the scene names no camera
   Eigen::Isometry3d camera_sensor_pose = Eigen::Isometry3d::Identity();
-  std::map<std::string, std::shared_ptr<const MeshParts>> mesh_files = {};  // each file once
-  std::map<std::string, int> material_of_file = {};                         // of a mesh file that names one
-  std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};     // name -> definition in <world>
-  bool confined = true;  // geometry files are read in a process of their own
+  std::map<std::string, std::shared_ptr<const MeshParts>> mesh_files = {};    // each file once
+  std::map<std::string, int> material_of_file = {};                           // of a mesh file that names one
+  std::map<std::string, std::shared_ptr<const LookAttributes>> look_of = {};  // name -> definition in <world>
+  std::unordered_map<std::string, int> look_index_of = {};                    // content -> index
+  std::unordered_map<std::string, std::int64_t> picture_of_file = {};         // file and use -> hash
+  std::set<std::size_t> placeholders = {};  // visuals that stand for a mesh that is not there
   sync::ConfinedPictures pictures = {};
 
-  // "FILE:LINE: sentence"
+  // "FILE:LINE: PATH sentence"
   [[noreturn]] void reject(const sdf::Element& element, const std::string& sentence) const;
   void warn(const sdf::Element& element, const std::string& sentence) const;
 
@@ -41,15 +49,9 @@ struct LoadContext {
   // folders.
   std::filesystem::path asset_file(const std::string& uri, const sdf::Element& element) const;
 
-  // The pose resolved by libsdformat's frame graph; rejects a pose that is not finite.
-  Eigen::Isometry3d resolve(const sdf::SemanticPose& pose, const sdf::Element& element,
-                            const std::string& resolve_to = "") const;
+  // The pose of a model, link, joint or frame in the model or world that contains it; of another element in its link or
+  // world. Rejects a pose that is not finite, or far away.
+  Eigen::Isometry3d resolve(const sdf::Element& element) const;
 };
-
-// XML path in libsdformat's notation, also for elements that it does not know.
-std::string xml_path(const sdf::Element& element);
-
-// The first child of that name in the file, ignoring elements created as defaults.
-sdf::ElementPtr explicit_child(const sdf::ElementPtr& element, const std::string& child);
 
 }  // namespace tactus::sim

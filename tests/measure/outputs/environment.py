@@ -4,7 +4,7 @@ import re
 import subprocess
 
 # Packages whose version can change an output, by the start of their name.
-PACKAGES = ("libode", "libsdformat", "libassimp", "libgl1-mesa-dri", "libegl-mesa", "libllvm", "libc6", "libmysofa", "libx264-", "libavcodec",
+PACKAGES = ("libode", "libassimp", "libgl1-mesa-dri", "libegl-mesa", "libllvm", "libc6", "libmysofa", "libx264-", "libavcodec",
             "libpng16", "libjpeg62", "libfreetype6", "libfcl", "libstdc++6", "ffmpeg")
 MESA = "/usr/share/glvnd/egl_vendor.d/50_mesa.json"  # keeps a graphics card of the machine out of the pictures
 # Instruction sets, widest last: {name: (flag in /proc/cpuinfo, settings of programs, environment)}.

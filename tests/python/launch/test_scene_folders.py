@@ -26,6 +26,7 @@ class SceneFolders(unittest.TestCase):
             folders = [pathlib.Path(name, each) for each in ("models", "more", "other")]
             for folder in folders:
                 folder.mkdir()
+            os.environ.pop(arguments.GAZEBO_FOLDERS, None)
             os.environ[arguments.SCENE_FOLDERS] = f"{folders[1]}::{folders[2]}:{folders[0]}"
             plan = arguments.parse(["--scene-folder", "models", "--player"], name)
             self.assertEqual([folders[0], folders[1], folders[2]], plan.scene_folders)
@@ -36,7 +37,11 @@ class SceneFolders(unittest.TestCase):
             os.environ[arguments.SCENE_FOLDERS] = "/no/such"
             self.assertIn("TACTUS_SCENE_FOLDERS: /no/such is not a folder", refusal_of())
             os.environ[arguments.SCENE_FOLDERS] = ""
+            os.environ[arguments.GAZEBO_FOLDERS] = ""
             self.assertEqual([], arguments.parse([], name).scene_folders)
+            os.environ[arguments.GAZEBO_FOLDERS] = f"/no/such::{folders[1]}:{folders[0]}"
+            self.assertEqual([folders[1], folders[0]], arguments.parse([], name).scene_folders)
+            self.assertEqual([folders[0], folders[1]], arguments.parse(["--scene-folder", "models"], name).scene_folders)
             self.assertIn("--scene-folder nowhere is not a folder", refusal_of("--scene-folder", "nowhere"))
 
 

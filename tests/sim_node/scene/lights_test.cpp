@@ -54,5 +54,5 @@ TEST_CASE("A world without a light has a directional default light") {
 
 TEST_CASE("An invalid light is rejected with its line") {
   SceneFile file(world("<light name='p' type='point'>\n<intensity>-1</intensity></light>"));
-  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:3: ") && Catch::Contains("intensity"));
+  CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("intensity"));
 }

@@ -21,6 +21,7 @@ MAX_SECONDS = 86400  # one day; a longer log fills most disks
 RECORDING = ("split_mb", "split_minutes", "keep", "max_mb")  # sync/tools/recorder/recorder_node.cpp
 BUS_OPTIONS = {"latency-ms": 10_000, "jitter-ms": 10_000, "loss-percent": 100}  # maximum of each: scripts/virtual_time/virtual_time_main.cpp
 SCENE_FOLDERS = "TACTUS_SCENE_FOLDERS"  # sim_node/scene/scene_folders.cpp
+GAZEBO_FOLDERS = "GZ_SIM_RESOURCE_PATH"
 PLAYOUT = ("policy", "aligner", "base", "budget", "soa")  # sync/playout/options.cpp
 
 
@@ -180,8 +181,8 @@ def scene_file(here, text):
 
 
 def scene_folders(here, named):
-    """Absolute paths of the folders that the scene may read besides its own: of --scene-folder, then of TACTUS_SCENE_FOLDERS, which a colon
-    separates. Every program that reads the scene receives them. Raises Refusal."""
+    """Absolute paths of the folders that the scene may read besides its own: of --scene-folder, then of TACTUS_SCENE_FOLDERS, then those of
+    GZ_SIM_RESOURCE_PATH that exist; a colon separates them. Every program that reads the scene receives them. Raises Refusal."""
     found = []
     for option, text in (*(("--scene-folder", text) for text in named), *(("TACTUS_SCENE_FOLDERS:", text) for text in os.environ.get(SCENE_FOLDERS, "").split(":"))):
         path = pathlib.Path(os.path.normpath(here / text))
@@ -190,6 +191,11 @@ def scene_folders(here, named):
         if not path.is_dir() or not os.access(path, os.R_OK | os.X_OK):
             raise Refusal(f"sim_node: {option} {text} is not a folder that can be read; name a folder of files of the scene")
         if path not in found:
+            found.append(path)
+    # The paths of a Gazebo installation, which name folders that other machines have.
+    for text in filter(None, os.environ.get(GAZEBO_FOLDERS, "").split(":")):
+        path = pathlib.Path(os.path.normpath(here / text))
+        if path not in found and path.is_dir() and os.access(path, os.R_OK | os.X_OK):
             found.append(path)
     return found
 

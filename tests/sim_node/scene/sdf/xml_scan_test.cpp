@@ -1,0 +1,43 @@
+// Counting an XML file before it is parsed.
+#include "sim_node/scene/sdf/xml_scan.h"
+
+#include "tests/sim_node/support/scene_file.h"
+
+using namespace tactus::sim;
+
+TEST_CASE("Elements and attributes are counted, and not those in comments, text, values or declarations") {
+  const auto parts = [](const char* text) { return sdf::count_xml(text).parts; };
+  CHECK(parts("") == 0);
+  CHECK(parts("no elements = \"at all\"") == 0);
+  CHECK(parts("<a/>") == 1);
+  CHECK(parts("<a b='1' c=\"2\">x = 'y'</a>") == 4);  // the end of an element counts
+  CHECK(parts("<?xml version='1.0'?><!DOCTYPE a><!-- <b c='d'/> --><a><![CDATA[<b c='d'/>]]></a>") == 2);
+  CHECK(parts("<a b='>' c='<d e=\"f\">'/>") == 3);
+  for (const char* damaged : {"<", "<a", "<a b='", "<a b='>", "<!--", "<!-- >", "<![CDATA[", "<?", "<a b='1'"}) CHECK(parts(damaged) <= 2);
+  const sdf::XmlCount count = sdf::count_xml("<a>\n<b c='1'/>\n<d e='1' f='2'/></a>");
+  CHECK(count.most_attributes == 2);
+  CHECK(count.line == 3);
+}
+
+TEST_CASE("An element with very many attributes is refused before it is parsed, also when its values look like tags") {
+  // tinyxml2 takes minutes for these, because it compares each attribute with all others.
+  for (const char* value : {"1", ">", "<", "<a>"}) {
+    std::string attributes;
+    for (int i = 0; i < 200'000; ++i) attributes += " a" + std::to_string(i) + "='" + value + "'";
+    SceneFile file(world("\n<a" + attributes + "/>"));
+    CHECK_THAT(file.load_error(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("256 attributes"));
+  }
+}
+
+TEST_CASE("Messages are short for names and values of any length") {
+  const std::string text(1 << 20, 'x');
+  SceneFile file(world("<model name='m'><link name='l'><" + text + "/></link><frame name='f' attached_to='" + text + "'/></model>"));
+  CHECK(file.load_error().size() < 2000);
+  file.write("scene.sdf", world("<model name='" + text + "'><link name='l'/></model>"));
+  CHECK_THAT(file.load_error(), Catch::Contains("256 bytes") && !Catch::Contains(std::string(200, 'x')));
+  std::string elements;
+  for (int i = 0; i < 2000; ++i) elements += "<x" + std::string(1000, 'y') + "/>";
+  file.write("scene.sdf", world(elements));
+  CHECK(file.load_error() == "");
+  CHECK(file.warnings.size() == 1001);
+}
