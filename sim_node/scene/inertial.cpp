@@ -56,6 +56,13 @@ MassProperties sum_of(const MassProperties& a, const MassProperties& b) {
   return sum;
 }
 
+void warn_of_meshes(const LoadContext& context, const sdf::Element& link, const std::vector<MassRemark>& remarks,
+                    const std::string& used_for) {
+  for (const MassRemark& r : remarks)
+    context.warn(link, "has mesh \"" + r.shape + "\", which " + r.clause + " for the " + used_for +
+                           "; close the mesh, or give <mass> and <inertia>");
+}
+
 // By <density>. A shape has the name of its collision.
 MassProperties by_density(const LoadContext& context, const sdf::Element& link, const sdf::Element& inertial,
                           std::span<const ShapeDef> shapes) {
@@ -64,6 +71,7 @@ MassProperties by_density(const LoadContext& context, const sdf::Element& link, 
   for (const sdf::Element& collision : link.children("collision"))
     if (const auto density = density_of(context, &collision)) own[collision.value("name")] = *density;
   MassProperties sum;
+  std::vector<MassRemark> remarks;
   for (const ShapeDef& shape : shapes) {
     const auto of_collision = own.find(shape.name);
     std::optional<double> density = of_collision == own.end() ? general : of_collision->second;
@@ -72,9 +80,10 @@ MassProperties by_density(const LoadContext& context, const sdf::Element& link, 
     ShapeDef plain = shape;
     plain.material = -1;  // 1 kg/m^3
     bool has_density = false;
-    const MassProperties one = mass_of(context.world, std::span(&plain, 1), has_density);
+    const MassProperties one = mass_of(context.world, std::span(&plain, 1), has_density, &remarks);
     sum = sum_of(sum, scaled_to(one, one.mass_kg * density.value_or(kDefaultDensity_kg_m3)));
   }
+  warn_of_meshes(context, link, remarks, "mass and the inertia");
   return sum;
 }
 
@@ -136,10 +145,7 @@ void read_inertial(const LoadContext& context, const sdf::Element& link, std::sp
   MassProperties p = mass_of(context.world, shapes, has_density, &remarks);
   // The shapes have no effect on a body whose mass, inertia and centre of mass are given.
   if (!mass || !inertia)
-    for (const MassRemark& r : remarks)
-      context.warn(*link, "has mesh \"" + r.shape + "\", which " + r.clause + " for the " +
-                              (mass ? "inertia" : inertia ? "mass" : "mass and the inertia") +
-                              "; close the mesh, or give <mass> and <inertia>");
+    warn_of_meshes(context, link, remarks, mass ? "inertia" : inertia ? "mass" : "mass and the inertia");
   const bool has_volume = p.mass_kg > 0;
   if (!has_volume) p = {kDefaultBodyMass_kg, {0, 0, 0}, kDefaultInertia_kg_m2 * Eigen::Matrix3d::Identity()};
   if (mass) {

@@ -145,7 +145,7 @@ void read_tool(LoadContext& context, const sdf::Element& element) {
   std::vector<MassRemark> remarks;
   held.inertia_kg_m2 = tool_inertia(context.world, tool, held.centre_of_mass_m, remarks);
   for (const MassRemark& r : remarks)
-    context.warn(*element, "has a mesh that " + r.clause + " for the inertia; close the mesh");
+    context.warn(element, "has a mesh that " + r.clause + " for the inertia; close the mesh");
   context.world.tools.push_back(tool);
 }
 
