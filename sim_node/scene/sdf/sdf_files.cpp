@@ -99,7 +99,7 @@ void SdfFiles::parse(Document& document, const std::string& included_by) {
     throw std::runtime_error(document.source.shown + ": the files of the scene are larger than " +
                              std::to_string(kMaxTotalBytes >> 20) + " MiB together: simplify the scene");
   const sdf::XmlCount parts = sdf::count_xml(text);
-  if (parts.most_attributes > kMaxAttributes)
+  if (parts.max_attributes > kMaxAttributes)
     throw std::runtime_error(sdf::where(document.source, parts.line) + ": an element has more than " +
                              std::to_string(kMaxAttributes) + " attributes: remove some");
   if ((parts_ += parts.parts) > kMaxParts)

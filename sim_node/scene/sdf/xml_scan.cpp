@@ -38,7 +38,7 @@ XmlCount count_xml(std::string_view text) {
       ++at, ++attributes;
     }
     count.parts += 1 + attributes;
-    if (attributes > count.most_attributes) count.most_attributes = attributes, worst = begin;
+    if (attributes > count.max_attributes) count.max_attributes = attributes, worst = begin;
     at = at < text.size() ? text.find('<', at) : at;
   }
   count.line += static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(worst), '\n'));

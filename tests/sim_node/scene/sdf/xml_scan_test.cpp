@@ -15,7 +15,7 @@ TEST_CASE("Elements and attributes are counted, and not those in comments, text,
   CHECK(parts("<a b='>' c='<d e=\"f\">'/>") == 3);
   for (const char* damaged : {"<", "<a", "<a b='", "<a b='>", "<!--", "<!-- >", "<![CDATA[", "<?", "<a b='1'"}) CHECK(parts(damaged) <= 2);
   const sdf::XmlCount count = sdf::count_xml("<a>\n<b c='1'/>\n<d e='1' f='2'/></a>");
-  CHECK(count.most_attributes == 2);
+  CHECK(count.max_attributes == 2);
   CHECK(count.line == 3);
 }
 
