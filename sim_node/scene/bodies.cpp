@@ -4,6 +4,7 @@
 #include <sdf/Collision.hh>
 #include <sdf/Link.hh>
 #include <sdf/Sensor.hh>
+#include <sstream>
 #include <tactus/material_def_t.hpp>
 
 #include "sim_node/scene/inertial.h"
@@ -20,6 +21,8 @@ namespace {
 
 // SDF's default (surface.sdf): friction 1 and no restitution.
 constexpr double kDefaultFriction = 1;
+// Limits of initial velocities: above those of any scene that a step of 1 ms can resolve. Design values.
+constexpr double kMaxSpeed_m_s = 1000, kMaxSpin_rad_s = 10000;
 
 double value_of(const LoadContext& context, const sdf::ElementPtr& element, double min, double max) {
   const double value = element->Get<double>();
@@ -91,6 +94,20 @@ void find_camera(LoadContext& context, const sdf::Link& link, const Eigen::Isome
   }
 }
 
+// Three numbers of an element of a link, for example <tactus:velocity>1 0 0.5</tactus:velocity>; zero without it.
+Eigen::Vector3d initial_rate(const LoadContext& context, const sdf::ElementPtr& link, const char* name, double max) {
+  const sdf::ElementPtr given = explicit_child(link, name);
+  if (!given) return {0, 0, 0};
+  const std::string text = given->GetValue() ? given->GetValue()->GetAsString() : "";
+  std::istringstream words(text);
+  Eigen::Vector3d out;
+  std::string more;
+  if (!(words >> out.x() >> out.y() >> out.z()) || words >> more || !out.allFinite() || out.norm() > max)
+    context.reject(*given, "= \"" + text + "\": it must be three numbers, of at most " +
+                               std::to_string(static_cast<long>(max)) + " as a vector");
+  return out;
+}
+
 int add_link(LoadContext& context, const sdf::Link& link, const Eigen::Isometry3d& model_pose, const std::string& scope,
              bool is_static, int inherited) {
   const sdf::ElementPtr element = link.Element();
@@ -114,6 +131,8 @@ int add_link(LoadContext& context, const sdf::Link& link, const Eigen::Isometry3
     };
     body.linear_damping_1_s = damping("linear"), body.angular_damping_1_s = damping("angular");
   }
+  body.velocity_m_s = initial_rate(context, element, "tactus:velocity", kMaxSpeed_m_s);
+  body.spin_rad_s = initial_rate(context, element, "tactus:spin", kMaxSpin_rad_s);
   find_camera(context, link, body.pose);
   for (std::uint64_t i = 0; i < link.LightCount(); ++i) {
     if (!is_static) context.warn(*link.LightByIndex(i)->Element(), "stays where it is when its link moves");

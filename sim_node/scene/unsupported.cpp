@@ -25,7 +25,7 @@ const std::map<std::string, Names> kSupported{
                "tactus:surface"}},
     {"frame", {"pose"}},
     {"link", {"pose", "inertial", "collision", "visual", "light", "velocity_decay", "gravity", "self_collide",
-              "tactus:surface"}},
+              "tactus:surface", "tactus:velocity", "tactus:spin"}},
     {"inertial", {"pose", "mass", "inertia"}},
     {"collision", {"pose", "geometry", "surface", "tactus:surface"}},
     {"surface", {"bounce", "friction"}},
