@@ -239,6 +239,10 @@ const RecoveryReport& AdaptiveStepper::step(World& world, ContactSource& source,
       assumed_[static_cast<std::size_t>(body)] = world.motions()[static_cast<std::size_t>(body)];
     while (!try_substep(world, source, dt, finest, next_h, contacts)) {
     }
+    const IslandSolver::Result& convergence = world.convergence();
+    report_.residual_m_s = std::max(report_.residual_m_s, convergence.residual_m_s);
+    report_.unconverged = std::max(report_.unconverged, convergence.unconverged);
+    report_.limited = std::max(report_.limited, convergence.limited);
     const double next = horizon_s(world, next_h);
     merge_substep(solved, contacts, elapsed, dt, h);
     resolve_overlaps(world, source, next);

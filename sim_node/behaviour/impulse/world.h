@@ -10,6 +10,7 @@
 #include "sim_node/behaviour/impulse/collisions.h"
 #include "sim_node/behaviour/impulse/contact_rows.h"
 #include "sim_node/behaviour/impulse/free_body.h"
+#include "sim_node/behaviour/impulse/island_solver.h"
 #include "sim_node/behaviour/impulse/joint_rows.h"
 #include "sim_node/behaviour/impulse/layers.h"
 #include "sim_node/behaviour/impulse/penalty.h"
@@ -133,6 +134,8 @@ class World {
   // After a step, velocities are the means over it. position: the centre of mass.
   std::span<const BodyMotion> motions() const { return motions_; }
   int sweeps_last() const { return sweeps_; }
+  // Convergence of the contacts in the last step.
+  const IslandSolver::Result& convergence() const { return convergence_; }
   bool moves(int body) const { return movers_[index(body)].kind != Kind::kFixed; }
 
  private:
@@ -162,6 +165,8 @@ class World {
   int dof_of(int body, int axis) const;
   static void place(BodyMotion& m, const BodyMotion& at);
   void sweep(double h_s);
+  void limit_warm_start();
+  void correct_positions(double h_s);
   void finish(double h);
   void finish(std::size_t system, double h);
   int mover_number(const Mover& m) const;
@@ -188,7 +193,12 @@ class World {
   std::vector<FreeMotion> free_motions_;    // of free bodies
   std::vector<double> force_time_s_;        // per free body: time from the middle of the previous step to the middle of this one
   std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
+  IslandSolver islands_;
+  IslandSolver::Result convergence_;
+  bool has_corrections_ = false;  // of positions, in this step
+  std::vector<double> end_gap_m_, lift_;  // per contact point, while positions are corrected
   Velocities velocity_, drift_, position_offset_;
+  Velocities before_contacts_;  // velocities without the impulses of the sweeps
   std::vector<double> scratch_;
   std::vector<int> last_change_;  // per mover plus one: counter value of its last change
   int sweeps_ = 0;

@@ -11,6 +11,9 @@ namespace {
 // remain.
 constexpr int kMaxSeparationSweeps = 200;
 constexpr double kSettled_m = 1e-7;
+// The same for corrections within a step: a thousandth of the overlap that may remain.
+constexpr int kMaxCorrectionSweeps = 40;
+constexpr double kCorrected_m = 1e-8;
 
 }  // namespace
 
@@ -92,6 +95,31 @@ void World::hold(int unit, const SavedStep& saved) {
   std::fill(state.rates.begin(), state.rates.end(), 0.0);
   s.system.set_state(state);
   for (const int body : s.bodies) rest(body);
+}
+
+// Adds the smallest displacements, weighted by inertia, with which gaps stay open at the end of the step and overlaps
+// shrink by their correction. Velocities do not change.
+void World::correct_positions(double h) {
+  end_gap_m_.resize(rows_.points.size());
+  lift_.assign(rows_.points.size(), 0);
+  for (std::size_t i = 0; i < rows_.points.size(); ++i) {
+    const ContactPoint& p = rows_.points[i];
+    end_gap_m_[i] = p.gap_m + h * rows_.velocity(p, velocity_).x() - (p.correction_m > 0 ? p.gap_m + p.correction_m : std::min(0.0, p.gap_m));
+  }
+  for (int sweep = 0; sweep < kMaxCorrectionSweeps; ++sweep) {
+    double change = 0;
+    for (std::size_t i = 0; i < rows_.points.size(); ++i) {
+      const ContactPoint& p = rows_.points[i];
+      if (p.couplings > 0) continue;
+      const double lacks = -end_gap_m_[i] - rows_.velocity(p, position_offset_).x();
+      const double push = std::max(-lift_[i], lacks / p.mobility(0, 0));
+      if (push == 0) continue;
+      lift_[i] += push;
+      rows_.apply(p, {push, 0, 0}, position_offset_);
+      change = std::max(change, std::abs(push) * p.mobility(0, 0));
+    }
+    if (change < kCorrected_m) return;
+  }
 }
 
 // Updates the inertia of the bodies in contact, at the current poses.

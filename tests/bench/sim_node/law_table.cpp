@@ -51,9 +51,9 @@ test::RandomWorld world_of_file(const std::string& file) {
 }
 
 void print_report(const std::string& name, const test::LawReport& r, const std::array<bool, test::kLaws>& broken) {
-  std::printf("%-28s over %9.3g rise %9.3g scale %9.3g J  overlap %5.1f um  p %7.1g L %7.1g  creep %7.1g tremble %7.1g m/s  held %d missed %d at %.3f, first %.3f ",
+  std::printf("%-28s over %9.3g rise %9.3g scale %9.3g J  overlap %5.1f um  p %7.1g L %7.1g  creep %7.1g tremble %7.1g m/s  held %d missed %d at %.3f, first %.3f, unconverged %d limited %d ",
               name.c_str(), r.over_J, r.rise_J, r.scale_J, 1e6 * r.overlap_m, r.momentum, r.spin_momentum, r.creep_m_s,
-              r.tremble_m_s, r.held, r.missed, r.first_missed_s, r.first_over_s);
+              r.tremble_m_s, r.held, r.missed, r.first_missed_s, r.first_over_s, r.unconverged, r.limited);
   for (std::size_t i = 0; i < broken.size(); ++i)
     if (broken[i]) std::printf(" %s", test::kLawNames[i]);
   std::printf("\n");
