@@ -14,6 +14,14 @@ constexpr double kSettled_m_s = 1e-12;
 constexpr std::size_t kMaxImpacts = 16;
 // Gaps below this count as zero: the residual of the sweeps, m.
 constexpr double kTouching_m = 2e-6;
+// Rounding of an energy, as a share of the energies that impulses take and return.
+constexpr double kRounding = 1e-12;
+
+std::array<Eigen::Vector3d, kMaxManifoldPoints> zero_impulses() {
+  std::array<Eigen::Vector3d, kMaxManifoldPoints> out;
+  out.fill(Eigen::Vector3d::Zero());
+  return out;
+}
 
 }  // namespace
 
@@ -96,13 +104,70 @@ void Collisions::predict_impact(ContactGroup& g) const {
   }
 }
 
+// Sweeps over the points that take part, at the time t, until no impulse changes. wanted: separating speeds; null: zero.
+void Collisions::solve_impact(const ContactGroup& g, double t, const double* wanted, PointImpulses& impulse) {
+  for (int round = 0; round < kMaxSweeps; ++round) {
+    double change = 0;
+    for (int i = 0; i < g.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!takes_part_[k]) continue;
+      const ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
+      Eigen::Vector3d v = rows_->velocity(p, *velocity_) + 2 * t / h_ * p.drift_m_s;
+      if (wanted) v.x() -= wanted[k];
+      const Eigen::Vector3d next = ContactRows::solve(p, impulse[k], v), by = next - impulse[k];
+      impulse[k] = next;
+      rows_->apply(p, by, *velocity_);
+      change = std::max(change, by.norm() * p.mobility(0, 0));
+    }
+    if (change < kSettled_m_s) break;
+  }
+}
+
+// The share of the way from the impulses of compression to those of restitution at which the pair has at most the
+// kinetic energy from before. The velocities are those with the impulses of restitution. With impulses J the energy
+// changes by the sum of J (u + u') / 2, u before and u' after them, which is a quadratic function of the share.
+double Collisions::passive_share(const ContactGroup& g, double t, const PointImpulses& compression, const PointImpulses& restitution) {
+  double constant = 0, slope = 0, curve = 0, size = 0;
+  const auto point = [&](int i) -> const ContactPoint& { return rows_->points[static_cast<std::size_t>(g.first + i)]; };
+  PointImpulses last, middle, first;
+  const auto velocities = [&](PointImpulses& out) {
+    for (int i = 0; i < g.count; ++i)
+      out[static_cast<std::size_t>(i)] = rows_->velocity(point(i), *velocity_) + 2 * t / h_ * point(i).drift_m_s;
+  };
+  const auto move = [&](const PointImpulses& from, const PointImpulses& to) {
+    for (int i = 0; i < g.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (takes_part_[k]) rows_->apply(point(i), to[k] - from[k], *velocity_);
+    }
+  };
+  const PointImpulses none = zero_impulses();
+  velocities(last);
+  move(restitution, compression);
+  velocities(middle);
+  move(compression, none);
+  velocities(first);
+  move(none, restitution);
+  for (int i = 0; i < g.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!takes_part_[k]) continue;
+    const Eigen::Vector3d by = restitution[k] - compression[k], opens = last[k] - middle[k];
+    constant += compression[k].dot(first[k] + middle[k]) / 2;
+    slope += by.dot(first[k] + middle[k]) / 2 + compression[k].dot(opens) / 2;
+    curve += by.dot(opens) / 2;
+    size += std::abs(restitution[k].dot(first[k])) + std::abs(restitution[k].dot(last[k]));
+  }
+  if (constant + slope + curve <= kRounding * size) return 1;
+  // The larger root of constant + slope s + curve s^2, with constant <= 0.
+  const double below = std::max(0.0, slope * slope - 4 * curve * std::min(0.0, constant));
+  return curve > 0 ? std::clamp((-slope + std::sqrt(below)) / (2 * curve), 0.0, 1.0) : 0;
+}
+
 void Collisions::apply_collision(ContactGroup& g) {
-  std::array<Eigen::Vector3d, 4> impulse;
-  std::array<double, 4> wanted;
-  std::array<bool, 4> takes_part{};
+  std::array<Eigen::Vector3d, kMaxManifoldPoints> impulse;
+  std::array<double, kMaxManifoldPoints> wanted;
   PredictedImpact first{h_, 0}, m;
   const auto point = [&](int i) -> ContactPoint& { return rows_->points[static_cast<std::size_t>(g.first + i)]; };
-  const int count = std::min(g.count, 4);
+  const int count = std::min(g.count, kMaxManifoldPoints);
   int struck = 0;
   for (int i = 0; i < count; ++i)
     if (will_collide(point(i), m) && m.time_s < first.time_s) {
@@ -124,7 +189,7 @@ void Collisions::apply_collision(ContactGroup& g) {
     const double speed = rows_->velocity(p, *velocity_).x() + 2 * t / h_ * p.drift_m_s.x();
     const double mean = rows_->velocity(p, *velocity_).x() + t / h_ * p.drift_m_s.x();
     const double gap = p.gap_m + rows_->velocity(p, *position_offset_).x() + t * mean;
-    takes_part[k] = gap < limits_.touching_m;
+    takes_part_[k] = gap < limits_.touching_m;
     impulse[k].setZero();
     wanted[k] = std::max(0.0, -g.restitution * speed);
   }
@@ -132,20 +197,23 @@ void Collisions::apply_collision(ContactGroup& g) {
   const auto keep = [this](double v, const double*) { before_.push_back(v); };
   for_each_component(g.mover_a, keep);
   if (g.mover_b != g.mover_a) for_each_component(g.mover_b, keep);
-  for (int round = 0; round < kMaxSweeps; ++round) {
-    double change = 0;
-    for (int i = 0; i < count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (!takes_part[k]) continue;
-      const ContactPoint& p = point(i);
-      Eigen::Vector3d v = rows_->velocity(p, *velocity_) + 2 * t / h_ * p.drift_m_s;
-      v.x() -= wanted[k];
-      const Eigen::Vector3d next = ContactRows::solve(p, impulse[k], v), by = next - impulse[k];
-      impulse[k] = next;
-      rows_->apply(p, by, *velocity_);
-      change = std::max(change, by.norm() * p.mobility(0, 0));
-    }
-    if (change < kSettled_m_s) break;
+  // Compression: the impulses that stop the approach. They take energy at any friction.
+  solve_impact(g, t, nullptr, impulse);
+  if (g.restitution > 0) {
+    // Restitution, Newton's law: it may add energy where friction stops or reverses the sliding (Kane and Levinson 1985,
+    // Stronge 1991). Along the line from the one solution to the other, energy is convex, and impulses stay within their
+    // cones: the largest share is taken that leaves no more energy than before.
+    const std::array<Eigen::Vector3d, kMaxManifoldPoints> compression = impulse;
+    solve_impact(g, t, wanted.data(), impulse);
+    const double share = passive_share(g, t, compression, impulse);
+    if (share < 1)
+      for (int i = 0; i < count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        if (!takes_part_[k]) continue;
+        const Eigen::Vector3d by = (share - 1) * (impulse[k] - compression[k]);
+        impulse[k] += by;
+        rows_->apply(point(i), by, *velocity_);
+      }
   }
   for (int i = 0; i < count; ++i) point(i).impact_N_s += impulse[static_cast<std::size_t>(i)].x();
   // Joints get no offset: their momentum depends on their positions, so they receive the impulse at the start of the

@@ -3,9 +3,11 @@
 // divide an impulse among all touching bodies; a sequential one propagates it, as in Newton's cradle.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "sim_node/behaviour/impulse/contact_rows.h"
+#include "sim_node/model/manifold.h"
 
 namespace tactus::sim::impulse {
 
@@ -34,7 +36,10 @@ class Collisions {
   bool will_touch(const ContactPoint& p, PredictedImpact& out) const;
   bool will_collide(const ContactPoint& p, PredictedImpact& out) const;
   double approach(const ContactGroup& g) const;
+  using PointImpulses = std::array<Eigen::Vector3d, kMaxManifoldPoints>;
   void apply_collision(ContactGroup& g);
+  void solve_impact(const ContactGroup& g, double time_s, const double* wanted, PointImpulses& impulse);
+  double passive_share(const ContactGroup& g, double time_s, const PointImpulses& compression, const PointImpulses& restitution);
   void predict_impact(ContactGroup& g) const;
   template <class F>
   void for_each_component(int mover, F&& each);
@@ -46,6 +51,7 @@ class Collisions {
   double h_ = 0;
   std::vector<double> approach_;  // per group
   std::vector<double> before_;    // velocities of the two movers
+  std::array<bool, kMaxManifoldPoints> takes_part_{};  // points of the pair that collide
 };
 
 }  // namespace tactus::sim::impulse

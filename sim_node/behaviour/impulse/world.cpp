@@ -11,7 +11,7 @@ namespace {
 
 // A gap below which surfaces touch, m. Design value: five times the residual that the sweeps leave between resting
 // surfaces.
-constexpr double kTouching_m = 1e-5;
+constexpr double kWarmGap_m = 1e-5;
 
 }  // namespace
 
@@ -218,7 +218,7 @@ void World::set_required_speeds(double h) {
 
 // The impulse of the previous step is a guess only where the surfaces still touch: it left their gap at zero.
 void World::limit_warm_start() {
-  for (ContactPoint& p : rows_.points) p.impulse *= std::clamp(1 - p.gap_m / kTouching_m, 0.0, 1.0);
+  for (ContactPoint& p : rows_.points) p.impulse *= std::clamp(1 - p.gap_m / kWarmGap_m, 0.0, 1.0);
 }
 
 void World::sweep(double h) {
