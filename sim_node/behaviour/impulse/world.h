@@ -109,8 +109,12 @@ class World {
   void restore(const SavedStep& saved);
   // Applies the loads of the saved step to the next step too.
   void restore_loads(const SavedStep& saved);
-  // Resets a unit to its saved pose, at rest.
-  void hold(int unit, const SavedStep& saved);
+  // Resets a unit to its saved pose. It keeps its momentum, except that which gravity added in the step of step_s.
+  void hold(int unit, const SavedStep& saved, double step_s);
+  // Resolves the approach of overlapping surfaces as an impact without restitution and friction: impulses act on both
+  // sides, so that momentum is constant, and take energy. contacts: of the current poses; those that are not deeper
+  // than min_overlap_m are ignored.
+  void stop_approach(std::span<const Manifold> contacts, double min_overlap_m);
   // Resolves overlaps by the smallest displacement that the contacts allow, weighted by inertia. Changes positions
   // only, not velocities. contacts: of the current poses. Overlaps deeper than max_overlap_m are ignored.
   void separate(std::span<const Manifold> contacts, double max_overlap_m);
@@ -196,6 +200,7 @@ class World {
   IslandSolver islands_;
   IslandSolver::Result convergence_;
   bool has_corrections_ = false;  // of positions, in this step
+  std::vector<Manifold> overlapping_;
   std::vector<double> end_gap_m_, lift_;  // per contact point, while positions are corrected
   Velocities velocity_, drift_, position_offset_;
   Velocities before_contacts_;  // velocities without the impulses of the sweeps

@@ -16,6 +16,14 @@ namespace {
 // A point closer than this to a triangle lies on it. A point is nearer than another by more than this, m: a million
 // times the rounding of a metre.
 constexpr double kOn_m = 1e-9;
+// Depth up to which a vertex behind a face that faces it is an overlap: where an edge passes through a face, and where
+// none does, as for boxes of equal size on each other, m. Design values: the overlap of a scene that is placed by eye;
+// far less than the thinnest walls.
+constexpr double kDeepest_m = kMaxOriented_m, kDeepestUnpierced_m = 5e-5;
+// Triangles face each other when their normals are opposite within 8 degrees. Cosine.
+constexpr double kFacing = -0.99;
+// A touching pair separates two triangles when no corner is beyond its plane by more than this angle, rad.
+constexpr double kBeyond = 1e-3;
 
 AlignedBox3d box_of(const Convex& c, const Isometry3d& to, double grown_m) {
   Vector3d half;
@@ -104,6 +112,22 @@ Triangle moved(const Triangle& t, const Isometry3d& pose) {
   for (Vector3d& v : m.v) v = pose * v;
   m.normal = pose.linear() * t.normal;
   return m;
+}
+
+bool orient(const Triangle& a, const Triangle& b, bool pierced, PointPair& p) {
+  if (a.normal.isZero() || b.normal.isZero()) return true;
+  const double out_of_a = p.normal.dot(a.normal), into_b = -p.normal.dot(b.normal);
+  if (a.normal.dot(b.normal) < kFacing && out_of_a < kFacing && into_b < kFacing && p.gap_m <= (pierced ? kDeepest_m : kDeepestUnpierced_m)) {
+    p.normal = -p.normal;
+    p.gap_m = -p.gap_m;
+    return true;
+  }
+  if (p.gap_m > kOn_m) return true;
+  if (out_of_a < -kBeyond || into_b < -kBeyond) return false;
+  const auto beyond = [&](const Triangle& t, const Vector3d& on, double side) {
+    return std::any_of(std::begin(t.v), std::end(t.v), [&](const Vector3d& v) { return side * p.normal.dot(v - on) > kBeyond * (v - on).norm() + kOn_m; });
+  };
+  return !beyond(a, p.on_a_m, 1) && !beyond(b, p.on_b_m, -1);
 }
 
 void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair) {

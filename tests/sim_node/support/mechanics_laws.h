@@ -80,6 +80,12 @@ class LawChecker {
     for (std::size_t i = 0; i < w_.world.bodies.size(); ++i)
       if (moves(i)) report_.allowance_J += 0.5 * w_.world.bodies[i].mass_kg * gh * gh;
     start_overlap_m_ = oracle_.deepest(solver.bodies()).depth_m;
+    // Bodies that touch or overlap at the start are lifted apart, each by at most the sum of the overlaps below it.
+    if (w_.touching)
+      for (std::size_t i = 0; i < w_.world.bodies.size(); ++i)
+        if (moves(i))
+          report_.allowance_J += w_.world.bodies[i].mass_kg * w_.world.gravity_m_s2.norm() *
+                                 static_cast<double>(w_.world.bodies.size()) * (start_overlap_m_ + 1e-5);
     min_potential_ = 1e300;
     start_J_ = min_J_ = energy(solver, true);
     start_kinetic_ = start_J_ - min_potential_;

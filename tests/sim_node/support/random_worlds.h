@@ -24,6 +24,7 @@ struct RandomWorld {
   WorldDef world;
   double seconds = 1;
   Expectation expectation = Expectation::kMoves;
+  bool touching = false;  // bodies may touch or overlap at the start
 };
 
 inline const std::vector<std::string>& world_families() {
@@ -261,7 +262,7 @@ inline RandomWorld touching(Maker& m) {
     add(m.draw_log(0.3, 3), {s, s, 0.1}, m.pose({0, 0, z + 0.05 - (i || !floats ? overlap : 0)}));
     z += 0.1 - (i || !floats ? overlap : 0);
   }
-  return {m.world, 1, Expectation::kRests};
+  return {m.world, 1, Expectation::kRests, true};
 }
 
 // One body strikes a wall or another one: restitution with friction.
