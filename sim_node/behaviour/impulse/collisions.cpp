@@ -1,5 +1,6 @@
 #include "sim_node/behaviour/impulse/collisions.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -162,6 +163,67 @@ double Collisions::passive_share(const ContactGroup& g, double t, const PointImp
   return curve > 0 ? std::clamp((-slope + std::sqrt(below)) / (2 * curve), 0.0, 1.0) : 0;
 }
 
+// Moves a pair to its poses at the time of its impact: arms, inertias and mobilities. Both sides get one point of action,
+// so that the impulses keep the angular momentum. Normals stay those of the start.
+void Collisions::move_to(ContactGroup& g, double t) {
+  t = std::max(0.0, t);
+  const auto begin = rows_->points.begin() + g.first;
+  start_points_.assign(begin, begin + g.count);
+  const auto twist_of = [&](int mover) { return mover >= 0 && static_cast<std::size_t>(mover) < velocity_->twists.size() ? mover : 0; };
+  moved_[0].twist = twist_of(g.mover_a), moved_[1].twist = twist_of(g.mover_b);
+  for (MovedBody& m : moved_) {
+    m.shift_m.setZero();
+    m.rotation.setIdentity();
+    if (!m.twist) continue;
+    const auto i = static_cast<std::size_t>(m.twist);
+    const Twist &v = velocity_->twists[i], &x = position_offset_->twists[i];
+    m.shift_m = t * v.linear_m_s + x.linear_m_s;
+    m.turn_rad = t * v.angular_rad_s + x.angular_rad_s;
+    m.spin_rad_s = v.angular_rad_s;
+    const double angle = m.turn_rad.norm();
+    if (angle > 0) m.rotation = Eigen::AngleAxisd(angle, m.turn_rad / angle).toRotationMatrix();
+    Eigen::Matrix3d& inverse = rows_->inertias[i].inverse_inertia;
+    m.start_inverse_inertia = inverse;
+    inverse = m.rotation * inverse * m.rotation.transpose();
+  }
+  if (!moved_[0].twist && !moved_[1].twist) return;
+  for (int i = 0; i < g.count; ++i) {
+    ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
+    if (p.couplings > 0) continue;
+    Eigen::Vector3d by = Eigen::Vector3d::Zero();
+    const auto moves = [&](const MovedBody& m, const Eigen::Vector3d& arm) {
+      return m.twist ? Eigen::Vector3d(m.shift_m + m.rotation * arm - arm) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    };
+    if (p.a) by += moves(moved_[0], p.arm_a) / 2;
+    if (p.b) by += moves(moved_[1], p.arm_b) / 2;
+    if (p.a) p.arm_a += by - moved_[0].shift_m;
+    if (p.b) p.arm_b += by - moved_[1].shift_m;
+    rows_->compute_mobility(p);
+  }
+}
+
+// Returns to the poses of the start. Changes of angular momentum stay what they were.
+void Collisions::move_back(ContactGroup& g, double t) {
+  for (int i = 0; i < g.count; ++i) {
+    ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
+    const ContactPoint& start = start_points_[static_cast<std::size_t>(i)];
+    p.arm_a = start.arm_a, p.arm_b = start.arm_b;
+    p.mobility = start.mobility, p.inverse_mobility = start.inverse_mobility, p.sliding_mobility = start.sliding_mobility;
+  }
+  for (MovedBody& m : moved_) {
+    if (!m.twist) continue;
+    const auto i = static_cast<std::size_t>(m.twist);
+    Eigen::Vector3d& spin = velocity_->twists[i].angular_rad_s;
+    const Eigen::Vector3d gained = rows_->inertias[i].inverse_inertia.inverse() * (spin - m.spin_rad_s);
+    spin = m.spin_rad_s + m.start_inverse_inertia * gained;
+    rows_->inertias[i].inverse_inertia = m.start_inverse_inertia;
+    BodyBlows& b = blows_[i];
+    // An impact that is found later but happened earlier is taken to have happened with the last one.
+    if (t < b.last.time_s) continue;
+    b.last = {std::max(0.0, t), m.turn_rad};
+  }
+}
+
 void Collisions::apply_collision(ContactGroup& g) {
   std::array<Eigen::Vector3d, kMaxManifoldPoints> impulse;
   std::array<double, kMaxManifoldPoints> wanted;
@@ -175,14 +237,7 @@ void Collisions::apply_collision(ContactGroup& g) {
       struck = i;
     }
   const double t = first.time_s;
-  g.last_s = std::max(0.0, t);
-  if (g.impacts++ == 0) {
-    g.first_impact_point = struck;
-    g.first_s = g.last_s;
-    g.speed_m_s = first.speed_m_s;
-  } else if (g.last_s < g.first_s) {
-    std::swap(g.first_s, g.last_s);
-  }
+  std::array<double, kMaxManifoldPoints> closing{};
   for (int i = 0; i < count; ++i) {
     const ContactPoint& p = point(i);
     const auto k = static_cast<std::size_t>(i);
@@ -192,11 +247,13 @@ void Collisions::apply_collision(ContactGroup& g) {
     takes_part_[k] = gap < limits_.touching_m;
     impulse[k].setZero();
     wanted[k] = std::max(0.0, -g.restitution * speed);
+    closing[k] = -speed;
   }
   before_.clear();
   const auto keep = [this](double v, const double*) { before_.push_back(v); };
   for_each_component(g.mover_a, keep);
   if (g.mover_b != g.mover_a) for_each_component(g.mover_b, keep);
+  move_to(g, t);
   // Compression: the impulses that stop the approach. They take energy at any friction.
   solve_impact(g, t, nullptr, impulse);
   if (g.restitution > 0) {
@@ -215,6 +272,8 @@ void Collisions::apply_collision(ContactGroup& g) {
         rows_->apply(point(i), by, *velocity_);
       }
   }
+  move_back(g, t);
+  report_impact(g, t, struck, closing, impulse);
   for (int i = 0; i < count; ++i) point(i).impact_N_s += impulse[static_cast<std::size_t>(i)].x();
   // Joints get no offset: their momentum depends on their positions, so they receive the impulse at the start of the
   // step.
@@ -225,6 +284,26 @@ void Collisions::apply_collision(ContactGroup& g) {
   };
   for_each_component(g.mover_a, add_position_offset);
   if (g.mover_b != g.mover_a) for_each_component(g.mover_b, add_position_offset);
+  for (const MovedBody& m : moved_)
+    if (m.twist) blows_[static_cast<std::size_t>(m.twist)].offset_rad = position_offset_->twists[static_cast<std::size_t>(m.twist)].angular_rad_s;
+}
+
+// Stores the impact with the highest speed of the step: on a mesh it may be on another face than the first. struck: the
+// point that met first. Where it takes no impulse, the impact is at the fastest of the points that do.
+void Collisions::report_impact(ContactGroup& g, double t, int struck, const std::array<double, kMaxManifoldPoints>& closing, const PointImpulses& impulse) const {
+  const double time = std::max(0.0, t);
+  ++g.impacts;
+  g.last_s = std::max(g.last_s, time);
+  int at = struck;
+  for (int i = 0; i < g.count; ++i) {
+    const auto k = static_cast<std::size_t>(i), best = static_cast<std::size_t>(at);
+    if (takes_part_[k] && impulse[k].x() > 0 && (impulse[best].x() <= 0 || closing[k] > closing[best])) at = i;
+  }
+  const double speed = closing[static_cast<std::size_t>(at)];
+  if (g.impacts > 1 && speed <= g.speed_m_s) return;
+  g.first_impact_point = at;
+  g.first_s = time;
+  g.speed_m_s = speed;
 }
 
 void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate,
@@ -234,6 +313,7 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
   velocity_ = &velocity;
   position_offset_ = &position_offset;
   h_ = h;
+  blows_.assign(velocity.twists.size(), {});
   approach_.resize(rows.groups.size());
   for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
   const std::size_t max_impacts = kMaxImpacts * rows.groups.size();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/behaviour/impulse/contact_rows.h"
+#include "sim_node/behaviour/impulse/free_body.h"
 #include "sim_node/model/manifold.h"
 
 namespace tactus::sim::impulse {
@@ -29,6 +30,10 @@ class Collisions {
   void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, Velocities& velocity,
                Velocities& position_offset);
 
+  // The last impact of a free body (index of its twist) in the step, and its rotation offset by all impacts, rad.
+  const Blow& blow_of(std::size_t twist) const { return blows_[twist].last; }
+  const Eigen::Vector3d& offset_rad(std::size_t twist) const { return blows_[twist].offset_rad; }
+
  private:
   struct PredictedImpact {
     double time_s = 0, speed_m_s = 0;
@@ -36,15 +41,33 @@ class Collisions {
   bool will_touch(const ContactPoint& p, PredictedImpact& out) const;
   bool will_collide(const ContactPoint& p, PredictedImpact& out) const;
   double approach(const ContactGroup& g) const;
+  void move_to(ContactGroup& g, double time_s);
+  void move_back(ContactGroup& g, double time_s);
   using PointImpulses = std::array<Eigen::Vector3d, kMaxManifoldPoints>;
   void apply_collision(ContactGroup& g);
   void solve_impact(const ContactGroup& g, double time_s, const double* wanted, PointImpulses& impulse);
   double passive_share(const ContactGroup& g, double time_s, const PointImpulses& compression, const PointImpulses& restitution);
+  void report_impact(ContactGroup& g, double time_s, int struck, const std::array<double, kMaxManifoldPoints>& closing,
+                     const PointImpulses& impulse) const;
   void predict_impact(ContactGroup& g) const;
   template <class F>
   void for_each_component(int mover, F&& each);
 
+  struct BodyBlows {
+    Blow last;
+    Eigen::Vector3d offset_rad = Eigen::Vector3d::Zero();
+  };
+  // A body of a pair at the time of its impact.
+  struct MovedBody {
+    int twist = 0;  // 0: static, or a link
+    Eigen::Vector3d shift_m, turn_rad, spin_rad_s;
+    Eigen::Matrix3d rotation, start_inverse_inertia;
+  };
+
   Limits limits_;
+  std::vector<BodyBlows> blows_;  // per twist
+  MovedBody moved_[2];
+  std::vector<ContactPoint> start_points_;  // of the pair, at the poses of the start
   ContactRows* rows_ = nullptr;
   const std::vector<std::size_t>* first_rate_ = nullptr;
   Velocities *velocity_ = nullptr, *position_offset_ = nullptr;

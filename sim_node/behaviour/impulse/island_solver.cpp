@@ -10,12 +10,12 @@ namespace {
 // time of a step. Design values: a tower of ten boxes, and four of them.
 constexpr int kMaxPoints = 44;
 constexpr int kMaxWork = 4 * kMaxPoints * kMaxPoints;
-constexpr int kMaxIterations = 14, kMaxHalvings = 4;
+constexpr int kMaxIterations = 20, kFullSteps = 10, kMaxHalvings = 6;
 // Share of a point's own mobility that is added to the matrix of a Newton step, so that redundant points (four corners
 // of a face) leave it regular. The result is not changed by it.
 constexpr double kRegular = 1e-9;
 // Rounding of energies, as a share of the energy that the impulses take and return.
-constexpr double kRounding = 1e-12;
+constexpr double kEnergyRounding = 1e-12;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -230,6 +230,11 @@ bool IslandSolver::solve(ContactRows& rows, std::span<const int> points, double 
   const double begun = residual_of(rows, points, impulse_);
   double least = begun, now = begun;
   for (int iteration = 0; iteration < kMaxIterations && least > settled; ++iteration) {
+    // Whole steps find most solutions, also through worse ones. Then shorter ones from the best impulses found.
+    if (iteration == kFullSteps) {
+      impulse_ = best_;
+      now = residual_of(rows, points, impulse_);
+    }
     linearise(rows, points);
     if (!eliminate()) break;
     double share = 1, next = 0;
@@ -238,7 +243,7 @@ bool IslandSolver::solve(ContactRows& rows, std::span<const int> points, double 
       for (std::size_t i = 0; i < n_; ++i) trial_[i] += share * step_[i];
       for (std::size_t i = 0; i < points.size(); ++i) project(rows.points[at(points[i])], trial_.data() + 3 * i);
       next = residual_of(rows, points, trial_);
-      if (next < now || halving == kMaxHalvings) break;
+      if (iteration < kFullSteps || next < now || halving == kMaxHalvings) break;
     }
     impulse_ = trial_;
     now = next;
@@ -270,7 +275,7 @@ bool IslandSolver::limit_energy(ContactRows& rows, std::span<const int> points, 
     wanted += p.impulse.x() * std::max(0.0, p.min_speed_m_s);
     size += std::abs(p.impulse.dot(first)) + std::abs(p.impulse.dot(last));
   }
-  if (w + q / 2 <= wanted + kRounding * size) return false;
+  if (w + q / 2 <= wanted + kEnergyRounding * size) return false;
   const double share = q > 0 ? std::clamp(-2 * w / q, 0.0, 1.0) : 0;
   for (const int i : points) {
     ContactPoint& p = rows.points[at(i)];

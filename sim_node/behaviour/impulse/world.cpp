@@ -282,7 +282,9 @@ void World::finish(double h) {
     if (i < free_.size()) {
       FreeBody& b = free_[i];
       const Twist &v = velocity_.twists[i + 1], &x = position_offset_.twists[i + 1];
-      complete_step(b, free_motions_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, x.angular_rad_s, h);
+      const Blow& blow = collisions_.blow_of(i + 1);
+      const Eigen::Vector3d beyond = blow.time_s < 0 ? x.angular_rad_s : Eigen::Vector3d(x.angular_rad_s - collisions_.offset_rad(i + 1));
+      complete_step(b, free_motions_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, beyond, blow, h);
       motions_[index(body_of_[i])] = motion_of(b);
     } else {
       finish(i - free_.size(), h);
@@ -336,15 +338,28 @@ void World::write_results(std::span<Manifold> contacts, double h) const {
       m.points[index(i)].normal_force_N = p.impact_N_s / h + p.impulse.x() / p.force_time_s;
     }
     m.impact = {};
-    if (g.first_impact_point < 0 || m.points[index(g.first_impact_point)].normal_force_N <= 0) continue;
-    const ManifoldPoint& at = m.points[index(g.first_impact_point)];
+    if (g.first_impact_point < 0) continue;
+    // Where the point that would meet first takes no impulse, the impact is at the fastest of those that do.
+    int struck = g.first_impact_point;
+    double speed = g.speed_m_s;
+    if (m.points[index(struck)].normal_force_N <= 0) {
+      struck = -1;
+      for (int i = 0; i < g.count; ++i) {
+        const double closing = -rows_.velocity(rows_.points[index(g.first + i)], before_contacts_).x();
+        if (m.points[index(i)].normal_force_N <= 0 || (struck >= 0 && closing <= speed)) continue;
+        struck = i;
+        speed = closing;
+      }
+      if (struck < 0) continue;
+    }
+    const ManifoldPoint& at = m.points[index(struck)];
     const Eigen::Vector3d half = at.depth_m / 2 * at.normal, on_a = at.point_m + half, on_b = at.point_m - half;
     const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
     m.impact.count = std::max(1, g.impacts);
     m.impact.first_s = std::min(g.first_s, h);
     m.impact.last_s = std::min(g.last_s, h);
-    m.impact.speed_m_s = g.speed_m_s;
-    m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.first_impact_point)].mobility(0, 0);
+    m.impact.speed_m_s = speed;
+    m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + struck)].mobility(0, 0);
     const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a),
                           met_b = on_b + g.first_s * b.velocity_at(on_b);
     m.impact.position_m = (met_a + met_b) / 2;

@@ -7,48 +7,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "sim_node/scene/load_sdf.h"
 #include "sync/node/node_options.h"
 #include "sync/text/settings.h"
 #include "tests/sim_node/support/mechanics_laws.h"
-#include "tests/sim_node/support/random_worlds.h"
+#include "tests/sim_node/support/world_files.h"
 
 using namespace tactus;
 using namespace tactus::sim;
 
 namespace {
-
-test::RandomWorld world_of_file(const std::string& file) {
-  std::vector<std::string> warnings;
-  test::RandomWorld w;
-  w.world = load_sdf(file, warnings);
-  std::ifstream in(file);
-  const std::string text((std::istreambuf_iterator<char>(in)), {});
-  std::istringstream lines(text.substr(0, text.find("-->")));
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string what, which;
-    words >> what;
-    if (what == "seconds") words >> w.seconds;
-    if (what == "expect") {
-      words >> which;
-      w.expectation = which == "momentum"                     ? test::Expectation::kMomentum
-                      : which == "static" || which == "rest" ? test::Expectation::kRests
-                                                              : test::Expectation::kMoves;
-    }
-    if (what != "velocity" && what != "spin") continue;
-    Eigen::Vector3d v;
-    words >> which >> v.x() >> v.y() >> v.z();
-    for (BodyDef& b : w.world.bodies)
-      if (b.name == which) (what == "spin" ? b.spin_rad_s : b.velocity_m_s) = v;
-  }
-  return w;
-}
 
 void print_report(const std::string& name, const test::LawReport& r, const std::array<bool, test::kLaws>& broken) {
   std::printf("%-28s over %9.3g rise %9.3g scale %9.3g J  overlap %5.1f um  p %7.1g L %7.1g  creep %7.1g tremble %7.1g m/s  held %d missed %d at %.3f, first %.3f, unconverged %d limited %d ",
@@ -80,7 +49,7 @@ int main(int argc, char** argv) try {
   const auto errors = sync::apply_settings(settings, setting_fields(), "sim_node", std::vector<setting_t>{}, overrides);
   if (!errors.empty()) throw std::runtime_error(errors.front());
   for (const std::string& file : scenes) {
-    const test::RandomWorld w = world_of_file(file);
+    const test::RandomWorld w = test::world_of_file(file);
     const test::LawReport r = test::LawChecker(w, settings).run();
     print_report(std::filesystem::path(file).stem().string(), r, test::broken_laws(w, r));
   }
