@@ -163,64 +163,70 @@ double Collisions::passive_share(const ContactGroup& g, double t, const PointImp
   return curve > 0 ? std::clamp((-slope + std::sqrt(below)) / (2 * curve), 0.0, 1.0) : 0;
 }
 
-// Moves a pair to its poses at the time of its impact: arms, inertias and mobilities. Both sides get one point of action,
-// so that the impulses keep the angular momentum. Normals stay those of the start.
+// Moves a pair to its poses and velocities at the time of its impact: arms, inertias and mobilities. Both sides get one
+// point of action, so that the impulses keep the angular momentum. Normals stay those of the start.
 void Collisions::move_to(ContactGroup& g, double t) {
   t = std::max(0.0, t);
   const auto begin = rows_->points.begin() + g.first;
   start_points_.assign(begin, begin + g.count);
   const auto twist_of = [&](int mover) { return mover >= 0 && static_cast<std::size_t>(mover) < velocity_->twists.size() ? mover : 0; };
   moved_[0].twist = twist_of(g.mover_a), moved_[1].twist = twist_of(g.mover_b);
+  // Joints receive impulses at the start of the step.
+  if (std::any_of(begin, begin + g.count, [](const ContactPoint& p) { return p.couplings > 0; })) moved_[0].twist = moved_[1].twist = 0;
   for (MovedBody& m : moved_) {
-    m.shift_m.setZero();
-    m.rotation.setIdentity();
     if (!m.twist) continue;
     const auto i = static_cast<std::size_t>(m.twist);
-    const Twist &v = velocity_->twists[i], &x = position_offset_->twists[i];
-    m.shift_m = t * v.linear_m_s + x.linear_m_s;
-    m.turn_rad = t * v.angular_rad_s + x.angular_rad_s;
-    m.spin_rad_s = v.angular_rad_s;
+    Twist& v = velocity_->twists[i];
+    const Twist &x = position_offset_->twists[i], &drift = drift_->twists[i];
+    m.start = v;
+    m.shift_m = t * (v.linear_m_s + t / h_ * drift.linear_m_s) + x.linear_m_s;
+    m.turn_rad = t * (v.angular_rad_s + t / h_ * drift.angular_rad_s) + x.angular_rad_s;
     const double angle = m.turn_rad.norm();
+    m.rotation.setIdentity();
     if (angle > 0) m.rotation = Eigen::AngleAxisd(angle, m.turn_rad / angle).toRotationMatrix();
     Eigen::Matrix3d& inverse = rows_->inertias[i].inverse_inertia;
     m.start_inverse_inertia = inverse;
     inverse = m.rotation * inverse * m.rotation.transpose();
+    m.inertia = inverse.inverse();
+    v.linear_m_s += 2 * t / h_ * drift.linear_m_s;
+    v.angular_rad_s = inverse * (m.start_inverse_inertia.inverse() * v.angular_rad_s);
+    m.struck = v;
   }
   if (!moved_[0].twist && !moved_[1].twist) return;
   for (int i = 0; i < g.count; ++i) {
     ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
-    if (p.couplings > 0) continue;
+    p.drift_m_s.setZero();
     Eigen::Vector3d by = Eigen::Vector3d::Zero();
-    const auto moves = [&](const MovedBody& m, const Eigen::Vector3d& arm) {
-      return m.twist ? Eigen::Vector3d(m.shift_m + m.rotation * arm - arm) : Eigen::Vector3d(Eigen::Vector3d::Zero());
-    };
+    const auto moves = [&](const MovedBody& m, const Eigen::Vector3d& arm) -> Eigen::Vector3d { return m.shift_m + m.rotation * arm - arm; };
     if (p.a) by += moves(moved_[0], p.arm_a) / 2;
     if (p.b) by += moves(moved_[1], p.arm_b) / 2;
+    // A point on a static surface stays on the plane of the moving one.
+    if (!p.a || !p.b) by *= 2;
     if (p.a) p.arm_a += by - moved_[0].shift_m;
     if (p.b) p.arm_b += by - moved_[1].shift_m;
     rows_->compute_mobility(p);
   }
 }
 
-// Returns to the poses of the start. Changes of angular momentum stay what they were.
+// Returns to the start of the step. Changes of linear and angular momentum stay what they were.
 void Collisions::move_back(ContactGroup& g, double t) {
+  if (!moved_[0].twist && !moved_[1].twist) return;
   for (int i = 0; i < g.count; ++i) {
     ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
     const ContactPoint& start = start_points_[static_cast<std::size_t>(i)];
     p.arm_a = start.arm_a, p.arm_b = start.arm_b;
+    p.drift_m_s = start.drift_m_s;
     p.mobility = start.mobility, p.inverse_mobility = start.inverse_mobility, p.sliding_mobility = start.sliding_mobility;
   }
-  for (MovedBody& m : moved_) {
+  for (const MovedBody& m : moved_) {
     if (!m.twist) continue;
     const auto i = static_cast<std::size_t>(m.twist);
-    Eigen::Vector3d& spin = velocity_->twists[i].angular_rad_s;
-    const Eigen::Vector3d gained = rows_->inertias[i].inverse_inertia.inverse() * (spin - m.spin_rad_s);
-    spin = m.spin_rad_s + m.start_inverse_inertia * gained;
+    Twist& v = velocity_->twists[i];
+    v.linear_m_s = m.start.linear_m_s + (v.linear_m_s - m.struck.linear_m_s);
+    v.angular_rad_s = m.start.angular_rad_s + m.start_inverse_inertia * (m.inertia * (v.angular_rad_s - m.struck.angular_rad_s));
     rows_->inertias[i].inverse_inertia = m.start_inverse_inertia;
-    BodyBlows& b = blows_[i];
     // An impact that is found later but happened earlier is taken to have happened with the last one.
-    if (t < b.last.time_s) continue;
-    b.last = {std::max(0.0, t), m.turn_rad};
+    if (t >= blows_[i].last.time_s) blows_[i].last = {std::max(0.0, t), m.turn_rad};
   }
 }
 
@@ -241,19 +247,21 @@ void Collisions::apply_collision(ContactGroup& g) {
   for (int i = 0; i < count; ++i) {
     const ContactPoint& p = point(i);
     const auto k = static_cast<std::size_t>(i);
-    const double speed = rows_->velocity(p, *velocity_).x() + 2 * t / h_ * p.drift_m_s.x();
     const double mean = rows_->velocity(p, *velocity_).x() + t / h_ * p.drift_m_s.x();
     const double gap = p.gap_m + rows_->velocity(p, *position_offset_).x() + t * mean;
     takes_part_[k] = gap < limits_.touching_m;
     impulse[k].setZero();
-    wanted[k] = std::max(0.0, -g.restitution * speed);
-    closing[k] = -speed;
   }
   before_.clear();
   const auto keep = [this](double v, const double*) { before_.push_back(v); };
   for_each_component(g.mover_a, keep);
   if (g.mover_b != g.mover_a) for_each_component(g.mover_b, keep);
   move_to(g, t);
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    closing[k] = -(rows_->velocity(point(i), *velocity_).x() + 2 * t / h_ * point(i).drift_m_s.x());
+    wanted[k] = std::max(0.0, g.restitution * closing[k]);
+  }
   // Compression: the impulses that stop the approach. They take energy at any friction.
   solve_impact(g, t, nullptr, impulse);
   if (g.restitution > 0) {
@@ -306,8 +314,9 @@ void Collisions::report_impact(ContactGroup& g, double t, int struck, const std:
   g.speed_m_s = speed;
 }
 
-void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate,
+void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate, const Velocities& drift,
                          Velocities& velocity, Velocities& position_offset) {
+  drift_ = &drift;
   rows_ = &rows;
   first_rate_ = &first_rate;
   velocity_ = &velocity;

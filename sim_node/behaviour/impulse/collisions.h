@@ -20,6 +20,7 @@ class Collisions {
   };
   explicit Collisions(Limits limits) : limits_(limits) {}
 
+  // drift: of the velocity, from the start of the step to its mean.
   // velocity: at the start of the step, changed by the impulses. aside: position offset of free bodies, m and rad. A
   // collision at a time t inside the step adds -t times the change of velocity: a body that moves from the start of
   // the step with the new velocity and this offset follows the path with the impulse at t. An overlap from the last
@@ -27,8 +28,8 @@ class Collisions {
   // once its lists have grown. Sets the impact data of each group. Without restitution a pair of free bodies takes
   // one impulse, so that it stops where and when it met. The contact solver handles the rest, and all impacts on
   // joints without restitution.
-  void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, Velocities& velocity,
-               Velocities& position_offset);
+  void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, const Velocities& drift,
+               Velocities& velocity, Velocities& position_offset);
 
   // The last impact of a free body (index of its twist) in the step, and its rotation offset by all impacts, rad.
   const Blow& blow_of(std::size_t twist) const { return blows_[twist].last; }
@@ -60,8 +61,9 @@ class Collisions {
   // A body of a pair at the time of its impact.
   struct MovedBody {
     int twist = 0;  // 0: static, or a link
-    Eigen::Vector3d shift_m, turn_rad, spin_rad_s;
-    Eigen::Matrix3d rotation, start_inverse_inertia;
+    Twist start, struck;  // velocities: of the start of the step, and at the time before the impact
+    Eigen::Vector3d shift_m, turn_rad;
+    Eigen::Matrix3d rotation, inertia, start_inverse_inertia;
   };
 
   Limits limits_;
@@ -70,6 +72,7 @@ class Collisions {
   std::vector<ContactPoint> start_points_;  // of the pair, at the poses of the start
   ContactRows* rows_ = nullptr;
   const std::vector<std::size_t>* first_rate_ = nullptr;
+  const Velocities* drift_ = nullptr;
   Velocities *velocity_ = nullptr, *position_offset_ = nullptr;
   double h_ = 0;
   std::vector<double> approach_;  // per group

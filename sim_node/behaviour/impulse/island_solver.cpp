@@ -10,7 +10,8 @@ namespace {
 // time of a step. Design values: a tower of ten boxes, and four of them.
 constexpr int kMaxPoints = 44;
 constexpr int kMaxWork = 4 * kMaxPoints * kMaxPoints;
-constexpr int kMaxIterations = 20, kFullSteps = 10, kMaxHalvings = 6;
+constexpr int kMaxIterations = 24, kFullSteps = 14;
+constexpr double kLeastShare = 0.01;  // of a Newton step
 // Share of a point's own mobility that is added to the matrix of a Newton step, so that redundant points (four corners
 // of a face) leave it regular. The result is not changed by it.
 constexpr double kRegular = 1e-9;
@@ -230,26 +231,34 @@ bool IslandSolver::solve(ContactRows& rows, std::span<const int> points, double 
   const double begun = residual_of(rows, points, impulse_);
   double least = begun, now = begun;
   for (int iteration = 0; iteration < kMaxIterations && least > settled; ++iteration) {
-    // Whole steps find most solutions, also through worse ones. Then shorter ones from the best impulses found.
+    // Whole steps find most solutions, also through worse ones and through impulses outside the cones. Then shorter ones
+    // from the best impulses found.
+    const bool whole = iteration < kFullSteps;
     if (iteration == kFullSteps) {
       impulse_ = best_;
       now = residual_of(rows, points, impulse_);
     }
     linearise(rows, points);
     if (!eliminate()) break;
-    double share = 1, next = 0;
-    for (int halving = 0;; ++halving, share /= 2) {
+    double next = 0;
+    for (double share = 1; share > kLeastShare; share /= 2) {
       trial_ = impulse_;
       for (std::size_t i = 0; i < n_; ++i) trial_[i] += share * step_[i];
+      if (whole) impulse_ = trial_;
       for (std::size_t i = 0; i < points.size(); ++i) project(rows.points[at(points[i])], trial_.data() + 3 * i);
       next = residual_of(rows, points, trial_);
-      if (iteration < kFullSteps || next < now || halving == kMaxHalvings) break;
+      if (whole || next < now) break;
     }
-    impulse_ = trial_;
-    now = next;
-    if (now < least) {
-      least = now;
-      best_ = impulse_;
+    if (next < least) {
+      least = next;
+      best_ = trial_;
+    }
+    if (whole) {
+      residual_of(rows, points, impulse_);  // speed_ of the next step
+    } else {
+      if (next >= now) break;
+      impulse_ = trial_;
+      now = next;
     }
   }
   if (!(least < begun)) return false;

@@ -216,6 +216,20 @@ void World::set_required_speeds(double h) {
   }
 }
 
+// Bodies that were struck act from their offset places: otherwise later impulses of the step would change the angular
+// momentum of a pair.
+void World::shift_arms() {
+  for (ContactPoint& p : rows_.points) {
+    if (p.couplings > 0) continue;
+    const Eigen::Vector3d a = position_offset_.twists[index(p.a)].linear_m_s, b = position_offset_.twists[index(p.b)].linear_m_s;
+    if ((!p.a || a.isZero(0)) && (!p.b || b.isZero(0))) continue;
+    const Eigen::Vector3d by = p.a && p.b ? Eigen::Vector3d((a + b) / 2) : p.a ? a : b;
+    if (p.a) p.arm_a += by - a;
+    if (p.b) p.arm_b += by - b;
+    rows_.compute_mobility(p);
+  }
+}
+
 // The impulse of the previous step is a guess only where the surfaces still touch: it left their gap at zero.
 void World::limit_warm_start() {
   for (ContactPoint& p : rows_.points) p.impulse *= std::clamp(1 - p.gap_m / kWarmGap_m, 0.0, 1.0);
@@ -381,7 +395,8 @@ void World::step(std::span<Manifold> contacts, double h) {
   const bool has_penalty = law_.penalty.stiffness_N_m > 0;
   if (!has_penalty) limit_warm_start();
   if (has_penalty) set_penalty_shells(rows_, law_.penalty, velocity_, h);
-  collisions_.resolve(rows_, h, first_rate_, velocity_, position_offset_);
+  collisions_.resolve(rows_, h, first_rate_, drift_, velocity_, position_offset_);
+  shift_arms();
   add_drift();
   set_required_speeds(h);
   if (has_penalty) set_penalty_forces(rows_, law_.penalty, velocity_, h);

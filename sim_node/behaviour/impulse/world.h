@@ -170,6 +170,7 @@ class World {
   static void place(BodyMotion& m, const BodyMotion& at);
   void sweep(double h_s);
   void limit_warm_start();
+  void shift_arms();
   void correct_positions(double h_s);
   void finish(double h);
   void finish(std::size_t system, double h);

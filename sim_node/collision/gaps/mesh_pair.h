@@ -44,8 +44,8 @@ struct MeshSide {
 bool is_contact(const MeshSide& a, const MeshSide& b, const PointPair& p);
 
 Triangle moved(const Triangle& t, const Eigen::Isometry3d& pose);  // leaves the edge directions unchanged
-// Sets normal and gap of a pair of intersecting triangles, world frame, to the shorter of the two translations along
-// their face normals.
+// Sets normal and gap of a pair of intersecting triangles, world frame, to the shortest translation that separates them:
+// along a face normal, or across two edges.
 void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair);
 
 // Gap above which orient() changes nothing, m.
