@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace tactus::sim::impulse {
 namespace {
@@ -15,6 +16,8 @@ constexpr double kSettled_m_s = 1e-12;
 constexpr std::size_t kMaxImpacts = 16;
 // Gaps below this count as zero: the residual of the sweeps, m.
 constexpr double kTouching_m = 2e-6;
+// Points whose normals are within 30 degrees belong to one face. Cosine.
+constexpr double kSameImpactFace = 0.866;
 // Rounding of an energy, as a share of the energies that impulses take and return.
 constexpr double kRounding = 1e-12;
 
@@ -74,18 +77,23 @@ bool Collisions::will_collide(const ContactPoint& p, PredictedImpact& out) const
 
 double Collisions::approach(const ContactGroup& g) const {
   if (g.spring_only) return 0;
-  double fastest = 0;
+  double fastest = 0, on_new_face = 0;
   bool overlaps = false;
-  for (int i = g.first; i < g.first + g.count; ++i) {
+  const auto points = std::span(rows_->points).subspan(static_cast<std::size_t>(g.first), static_cast<std::size_t>(g.count));
+  for (const ContactPoint& p : points) {
     PredictedImpact m;
-    const ContactPoint& p = rows_->points[static_cast<std::size_t>(i)];
-    if (will_collide(p, m)) fastest = std::max(fastest, m.speed_m_s);
     overlaps |= p.gap_m < 0;
+    if (!will_collide(p, m)) continue;
+    fastest = std::max(fastest, m.speed_m_s);
+    const bool known = g.impacts > 0 && std::any_of(points.begin(), points.end(), [&](const ContactPoint& q) {
+      return q.impact_N_s > 0 && q.axes.row(0).dot(p.axes.row(0)) > kSameImpactFace;
+    });
+    if (!known) on_new_face = std::max(on_new_face, m.speed_m_s);
   }
   if (g.restitution > 0 || overlaps) return fastest;
   // Joints get no offset. In front of them the contact solver lets the gap close to zero.
   const int twists = static_cast<int>(velocity_->twists.size());
-  return g.impacts == 0 && g.mover_a < twists && g.mover_b < twists ? fastest : 0;
+  return g.mover_a < twists && g.mover_b < twists ? on_new_face : 0;
 }
 
 // Predicts the meeting of a pair without impact from its free motion, when its gap is open.
@@ -166,7 +174,6 @@ double Collisions::passive_share(const ContactGroup& g, double t, const PointImp
 // Moves a pair to its poses and velocities at the time of its impact: arms, inertias and mobilities. Both sides get one
 // point of action, so that the impulses keep the angular momentum. Normals stay those of the start.
 void Collisions::move_to(ContactGroup& g, double t) {
-  t = std::max(0.0, t);
   const auto begin = rows_->points.begin() + g.first;
   start_points_.assign(begin, begin + g.count);
   const auto twist_of = [&](int mover) { return mover >= 0 && static_cast<std::size_t>(mover) < velocity_->twists.size() ? mover : 0; };
@@ -226,7 +233,8 @@ void Collisions::move_back(ContactGroup& g, double t) {
     v.angular_rad_s = m.start.angular_rad_s + m.start_inverse_inertia * (m.inertia * (v.angular_rad_s - m.struck.angular_rad_s));
     rows_->inertias[i].inverse_inertia = m.start_inverse_inertia;
     // An impact that is found later but happened earlier is taken to have happened with the last one.
-    if (t >= blows_[i].last.time_s) blows_[i].last = {std::max(0.0, t), m.turn_rad};
+    if (t >= blows_[i].last.time_s) blows_[i].last = {t, m.turn_rad};
+    if (t < 0 && blows_[i].last.time_s < 0) blows_[i].last = {0, Eigen::Vector3d::Zero()};
   }
 }
 

@@ -26,7 +26,7 @@ class Collisions {
   // the step with the new velocity and this offset follows the path with the impulse at t. An overlap from the last
   // step is a collision at a time before the start. first_rate: of each system, and one past the last. Real-time safe
   // once its lists have grown. Sets the impact data of each group. Without restitution a pair of free bodies takes
-  // one impulse, so that it stops where and when it met. The contact solver handles the rest, and all impacts on
+  // one impulse on each face, so that it stops where and when it met. The contact solver handles the rest, and all impacts on
   // joints without restitution.
   void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, const Velocities& drift,
                Velocities& velocity, Velocities& position_offset);

@@ -1,9 +1,9 @@
-// Random worlds that nobody drives, and the laws of mechanics that they break, by family.
+// Random worlds without a driving force, and the laws of mechanics that they break, by family.
 //
 //    bin/law_table [--count N] [--seed S] [--family NAME]... [--scene FILE.sdf]... [--json FILE] [--set NAME=VALUE]...
 //
-// A scene file may say in its first comment how long it runs (seconds 0.5) and what it expects (expect static, rest
-// or momentum).
+// The first comment of a scene file may give its duration (seconds 0.5) and its expectation (expect static, rest or
+// momentum).
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-// Laws of mechanics, checked on a world that nobody drives, from poses, velocities, contacts and events only: energy,
+// Laws of mechanics, checked on a world without a driving force, from poses, velocities, contacts and events only: energy,
 // overlap, momentum, rest, impacts without an event, and bodies held still by force.
 #pragma once
 
@@ -23,7 +23,7 @@ struct LawReport {
   double scale_J = 0;     // energy in play: kinetic at the start, plus the greatest loss of potential energy
   double allowance_J = 0;  // resolution of the energies
   double overlap_m = 0;
-  double momentum = 0, spin_momentum = 0;  // largest change, as a share of what is in play
+  double momentum = 0, spin_momentum = 0;  // largest change, as a share of those in play
   double creep_m_s = 0, tremble_m_s = 0;   // of the second half
   int held = 0, missed = 0;
   double first_missed_s = -1, first_over_s = -1;
@@ -179,10 +179,10 @@ class LawChecker {
       const double half = step == 1 ? 0.5 : 1;
       const Vector3d by = m.velocity_m_s - before_[i].velocity_m_s - half * settings_.step_s * w_.world.gravity_m_s2;
       if (by.norm() < kBlow_m_s) continue;
-      bool told = false;
+      bool reported = false;
       for (std::size_t j = 0; j < root.size(); ++j)
-        told |= find(static_cast<int>(j)) == find(static_cast<int>(i)) && step - last_event_[j] <= kRecent;
-      if (told) continue;
+        reported |= find(static_cast<int>(j)) == find(static_cast<int>(i)) && step - last_event_[j] <= kRecent;
+      if (reported) continue;
       if (report_.missed++ == 0) report_.first_missed_s = step * settings_.step_s;
     }
   }

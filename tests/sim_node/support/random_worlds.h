@@ -1,4 +1,4 @@
-// Small worlds drawn at random, of named families, that nobody drives. Each world is defined by its family and its
+// Small worlds drawn at random, of named families, without a driving force. Each world is defined by its family and its
 // seed. Bodies do not overlap at the start and have gaps of at least 11 um, except in the family "touching".
 #pragma once
 

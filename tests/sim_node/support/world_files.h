@@ -1,5 +1,5 @@
-// Scene files as worlds for the laws of mechanics. The first comment of a file may say how long it runs (seconds 0.5) and
-// what it expects (expect static, rest or momentum).
+// Scene files as worlds for the laws of mechanics. The first comment of a file may give its duration (seconds 0.5) and
+// its expectation (expect static, rest or momentum).
 #pragma once
 
 #include <fstream>
