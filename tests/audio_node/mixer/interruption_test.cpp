@@ -19,7 +19,7 @@ constexpr int kFrames = 128;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // A renderer whose card can stand still.
-struct Card {
+struct PlayedCard {
   CallbackQueues queues;
   Renderer renderer{queues, {}};
   std::int64_t now_ns = kStart_ns;
@@ -53,7 +53,7 @@ struct Card {
 }  // namespace
 
 TEST_CASE("After an underflow the sound returns from silence without a step") {
-  auto card = std::make_unique<Card>();
+  auto card = std::make_unique<PlayedCard>();
   card->strike(1);
   card->play(40);
   const float usual = card->steepest(20 * kFrames);
@@ -68,7 +68,7 @@ TEST_CASE("After an underflow the sound returns from silence without a step") {
 TEST_CASE("After a stop of any length nothing of before sounds, and new hits do") {
   std::mt19937_64 random(6);
   for (int trial = 0; trial < 50; ++trial) {
-    auto card = std::make_unique<Card>();
+    auto card = std::make_unique<PlayedCard>();
     card->strike(1);
     card->play(20 + static_cast<int>(random() % 50));
     // 0.1 s to three years; some clocks step back.

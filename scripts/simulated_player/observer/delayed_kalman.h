@@ -1,0 +1,68 @@
+// Kalman filter of a linear system whose measurements arrive late and in any order. The filter keeps the last
+// steps with their inputs and measurements. A measurement that claims an age is applied at that age, and the later
+// steps are computed again: the result equals that of a filter which received all measurements in time. Pure.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "scripts/simulated_player/observer/matrices.h"
+
+namespace tactus::observer {
+
+// One step of dt_s: x' = A x + B u, with noise that the player assumes.
+struct HandModel {
+  double dt_s = 0.01;
+  Matrix a;
+  Vector b;
+  Matrix noise;              // covariance for each step, apart from the two below
+  double control_share = 0;  // standard deviation of the input noise for each step, as a share of |u|
+  double control_sd = 0;     // its constant part, in the unit of u
+  // Diffusion of state 0 for each unit of |state 1|, m^2/s at 1 m/s: a fast movement is less certain.
+  double speed_noise_m2_s = 0;
+};
+
+class DelayedKalman {
+ public:
+  // memory_s: the largest age of a measurement; an older one is applied at that age. Throws std::invalid_argument
+  // when a size does not fit, or a state count exceeds kMaxStates.
+  DelayedKalman(HandModel model, const Vector& mean, const Matrix& covariance, double memory_s = 0.6);
+
+  // One step with this input.
+  void predict(double u);
+  // A scalar measurement y = h x + noise of this variance, which the player believes to be age_s old. Ignored when
+  // y or the variance is not finite. Negative ages count as 0.
+  void measure(double age_s, const Vector& h, double y, double variance);
+  // The estimate at the newest step, or age_s before it.
+  const Vector& mean();
+  const Matrix& covariance();
+  Vector mean_before(double age_s);
+  // Number of measurements that were older than the memory.
+  long too_old() const { return too_old_; }
+
+ private:
+  struct Measurement {
+    Vector h;
+    double y, variance;
+  };
+  struct Step {
+    Vector mean;        // before this step's measurements
+    Matrix covariance;  // before them
+    Vector updated_mean;
+    Matrix updated_covariance;
+    double u = 0;  // input to the next step
+    std::vector<Measurement> measurements;
+  };
+  void apply(Step& step) const;
+  void advance(const Step& from, Step& to) const;
+  void refresh();
+  std::size_t index_of(double age_s) const;
+
+  HandModel model_;
+  std::size_t steps_;
+  std::deque<Step> history_;  // newest last
+  std::size_t dirty_;         // first step to compute again
+  long too_old_ = 0;
+};
+
+}  // namespace tactus::observer
