@@ -138,7 +138,7 @@ void Collisions::solve_impact(const ContactGroup& g, double t, const double* wan
 double Collisions::passive_share(const ContactGroup& g, double t, const PointImpulses& compression, const PointImpulses& restitution) {
   double constant = 0, slope = 0, curve = 0, size = 0;
   const auto point = [&](int i) -> const ContactPoint& { return rows_->points[static_cast<std::size_t>(g.first + i)]; };
-  PointImpulses last, middle, first;
+  PointImpulses last = zero_impulses(), middle = last, first = last;
   const auto velocities = [&](PointImpulses& out) {
     for (int i = 0; i < g.count; ++i)
       out[static_cast<std::size_t>(i)] = rows_->velocity(point(i), *velocity_) + 2 * t / h_ * point(i).drift_m_s;
@@ -239,8 +239,8 @@ void Collisions::move_back(ContactGroup& g, double t) {
 }
 
 void Collisions::apply_collision(ContactGroup& g) {
-  std::array<Eigen::Vector3d, kMaxManifoldPoints> impulse;
-  std::array<double, kMaxManifoldPoints> wanted;
+  PointImpulses impulse = zero_impulses();
+  std::array<double, kMaxManifoldPoints> wanted{};
   PredictedImpact first{h_, 0}, m;
   const auto point = [&](int i) -> ContactPoint& { return rows_->points[static_cast<std::size_t>(g.first + i)]; };
   const int count = std::min(g.count, kMaxManifoldPoints);
