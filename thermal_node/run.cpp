@@ -5,7 +5,6 @@
 //        THERMAL_DEVICE                readings of the display, if it sends any
 //   out  THERMAL_STATE, THERMAL_DEVICE every tick; the latter of the simulated display
 //        PRESENTED                     every begin and hit of its tool
-//
 // Lost contacts, lost or false readings, a second sender of either output: the command returns to the temperature of resting
 // skin. With --log it renders a recorded run, as fast as it can, and writes --trace; the same log gives the same bytes.
 #include "thermal_node/run.h"

@@ -42,6 +42,9 @@ constexpr double kRollGrain = 0.1;  // a rolling patch of 1 mm passes no finer g
 // Only its spectrum matters, not its height.
 constexpr Roughness kRough{1e-6, 0};
 constexpr double kRollCutoff_Hz = 400;
+// Of the levels within the set: the pressures of the materials span 70 dB, and those of soft ones would be below the noise of a recording.
+// Stevens' exponent of loudness (unverified).
+constexpr double kCompression = 0.6;
 // Materials that are paired with each other, in addition to all materials alone.
 const std::set<std::string> kPaired{"steel", "glass", "oak", "rubber"};
 
@@ -201,7 +204,11 @@ class Set {
   }
 
   std::filesystem::path folder_;
-  Settings settings_;
+  const Settings settings_ = [] {
+    Settings settings;
+    settings.loudness_exponent = kCompression;
+    return settings;
+  }();
 };
 
 }  // namespace

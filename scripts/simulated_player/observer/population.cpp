@@ -37,23 +37,12 @@ double published_value(const ParameterRange& r, double u) {
   return r.centre;
 }
 
-}  // namespace
-
-const char* evidence_name(Evidence evidence) {
-  switch (evidence) {
-    case Evidence::kVerified: return "verified";
-    case Evidence::kSecondHand: return "second hand";
-    case Evidence::kUnverified: return "unverified";
-    case Evidence::kDesign: return "design";
-  }
-  return "design";
-}
-
-const std::vector<ParameterRange>& parameter_ranges() {
+// Properties 1 to 17.
+std::vector<ParameterRange> ranges_of_the_senses() {
   using enum Evidence;
   using enum Spread;
   using enum Group;
-  static const std::vector<ParameterRange> ranges{
+  return {
       {"visual latency", 1, &P::visual_latency_s, "ms", 1e-3, 95, 120, 170, kLogNormal, kLatency, kVerified,
        "Cluff, Crevecoeur and Scott 2015, Vision Research 110:215 (about 100 ms to muscle activity); range: "
        "design"},
@@ -105,7 +94,15 @@ const std::vector<ParameterRange>& parameter_ranges() {
       {"thermal Weber", 16, &P::thermal_weber, "1", 1, 0.3, 0.43, 0.6, kLogNormal, kNoise, kVerified,
        "Bergmann Tiest and Kappers 2009, Attention, Perception & Psychophysics 71:481 (43 %); range: design"},
       {"prior of a common cause", 17, &P::common_cause, "1", 1, 0, 0.5, 1, kBeta44, kNone, kDesign,
-       "beta(4, 4); 0.28 is usually quoted for Koerding et al. 2007 (unverified)"},
+       "beta(4, 4); 0.28 is usually quoted for Koerding et al. 2007 (unverified)"}};
+}
+
+// Properties 18 to 25.
+std::vector<ParameterRange> ranges_of_movement() {
+  using enum Evidence;
+  using enum Spread;
+  using enum Group;
+  return {
       {"assumed process noise", 18, &P::process_noise_m2_s, "m^2/s", 1, 1e-4, 1e-3, 1e-2, kLogNormal, kNone,
        kDesign, "structure: Crevecoeur, Munoz and Scott 2016, Journal of Neuroscience 36:8598"},
       {"motor noise, share", 19, &P::motor_noise_share, "1", 1, 0.03, 0.1, 0.2, kLogNormal, kNoise, kVerified,
@@ -130,6 +127,27 @@ const std::vector<ParameterRange>& parameter_ranges() {
       {"lapse", 24, &P::lapse, "1", 1, 0.005, 0.02, 0.06, kLogNormal, kNone, kDesign, "missed percepts"},
       {"search spread", 25, &P::search_spread, "1", 1, 0.5, 1, 2, kLogNormal, kNone, kDesign,
        "factor on the prior of each task"}};
+}
+
+}  // namespace
+
+const char* evidence_name(Evidence evidence) {
+  switch (evidence) {
+    case Evidence::kVerified: return "verified";
+    case Evidence::kSecondHand: return "second hand";
+    case Evidence::kUnverified: return "unverified";
+    case Evidence::kDesign: return "design";
+  }
+  return "design";
+}
+
+const std::vector<ParameterRange>& parameter_ranges() {
+  static const std::vector<ParameterRange> ranges = [] {
+    std::vector<ParameterRange> all = ranges_of_the_senses();
+    const std::vector<ParameterRange> movement = ranges_of_movement();
+    all.insert(all.end(), movement.begin(), movement.end());
+    return all;
+  }();
   return ranges;
 }
 

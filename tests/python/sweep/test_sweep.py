@@ -89,10 +89,13 @@ class Sweep(unittest.TestCase):
         sweep("--resume", "--out", out)
         self.assertEqual((out / "games.csv").read_bytes(), before)
 
-    def test_a_study_in_another_encoding_is_copied_unchanged(self):
-        self.study.write_bytes(STUDY.replace("UTF-8", "UTF-16").encode("utf-16"))
+    def test_a_study_is_copied_unchanged_and_one_in_another_encoding_is_refused(self):
+        self.study.write_bytes(STUDY.replace("<conditions>", "<!-- Größe 大きさ -->\r\n<conditions>").encode())
         sweep(self.study, "--games", 1, "--out", self.folder / "out")
         self.assertEqual((self.folder / "out" / "study.xml").read_bytes(), self.study.read_bytes())
+        self.study.write_bytes(STUDY.replace("UTF-8", "UTF-16").encode("utf-16"))
+        done = sweep(self.study, "--games", 1, "--out", self.folder / "again", status=1)
+        self.assertIn("is UTF-16 and not UTF-8; save it as UTF-8", done.stderr)
 
     def test_a_failed_game_is_marked_in_its_row(self):
         study = study_file.read(str(self.study))

@@ -16,7 +16,7 @@ constexpr double kFloatRounding = 2e-5;
 
 Vector2d clip_position(const Camera& camera, const Vector3d& place) {
   const Eigen::Vector4d clip =
-      (camera.projection.cast<double>() * camera.view.cast<double>()) * place.homogeneous();
+      (camera.projection.cast<double>() * camera.view.cast<double>()) * Vector3d(place - camera.origin_m).homogeneous();
   REQUIRE(clip.w() > 0);
   return clip.head<2>() / clip.w();
 }

@@ -239,7 +239,7 @@ const std::string kMesh = "<geometry><mesh><uri>two.obj</uri></mesh></geometry>"
 
 SceneFile two(const std::string& inside) {
   return SceneFile(
-      link("<collision name='c'>" + kMesh + "</collision><visual name='v'>" + kMesh + inside + "</visual>"),
+      link("<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial><collision name='c'>" + kMesh + "</collision><visual name='v'>" + kMesh + inside + "</visual>"),
       {{"a.png", picture(1)},
        {"b.png", picture(2)},
        {"n.png", picture(3)},
