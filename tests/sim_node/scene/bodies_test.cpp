@@ -117,5 +117,5 @@ TEST_CASE("A link starts with the velocity and spin that the scene gives it") {
   CHECK(same(w.bodies[0].spin_rad_s, {0, 0, 3.5}));
   CHECK(file.warnings.empty());
   SceneFile wrong(world("<model name=\"m\"><link name=\"l\"><tactus:velocity>0.5 -1</tactus:velocity></link></model>"));
-  CHECK_THROWS_WITH(wrong.load(), Catch::Contains("three numbers"));
+  CHECK_THROWS_WITH(wrong.load(), Catch::Contains("must be 3 numbers"));
 }
