@@ -27,9 +27,9 @@ struct MeshShells {
   int turned_triangles = 0;  // triangles that faced the other side than their neighbours
 };
 
-// Welds vertices nearer than a millionth of the diagonal (a thousandth, far from the origin of the file), drops repeated triangles, and turns triangles that face the other
-// side than the larger part of the triangles around them. Several shells that meet in an edge stay apart if each is closed.
-// O(n log n).
+// Welds vertices nearer than a millionth of the diagonal (a thousandth, far from the origin of the file), drops repeated
+// triangles, and turns triangles that face the other side than the larger part of the triangles around them. Several shells
+// that meet in an edge stay apart if each is closed. O(n log n).
 MeshShells shells_of(const TriangleMesh& mesh);
 
 }  // namespace tactus::sim

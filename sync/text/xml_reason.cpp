@@ -15,6 +15,7 @@ std::string xml_reason(const tinyxml2::XMLDocument& document) {
     case tinyxml2::XML_ERROR_PARSING_COMMENT: return "a comment does not end; end it with -->";
     case tinyxml2::XML_ERROR_PARSING_DECLARATION: return "the declaration <?xml ...?> is incomplete, or not at the beginning; move or remove it";
     case tinyxml2::XML_ERROR_PARSING_UNKNOWN: return "a <! ... > does not end; end it with >";
+    case tinyxml2::XML_ERROR_PARSING: return "it ends before its last element is closed; close the element, or copy the whole file again";
     case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED: return "its elements are nested too deeply; simplify it";
     default: return "it cannot be parsed; write elements in < and >";
   }

@@ -20,6 +20,7 @@ TEST_CASE("A text that is not XML has a reason and a remedy, and no code of the 
       {"<a></b>", "closed by another name"},
       {"<a><b></a>", "closed by another name"},
       {"<a", "a tag is incomplete"},
+      {"<a><b></b>", "ends before its last element is closed"},
       {"<a b=1/>", "an attribute is not NAME=\"VALUE\""},
       {"<a b=\"1\" b=\"2\"/>", "an attribute is not NAME=\"VALUE\""},
       {"<a>text", "its element is not closed"},
