@@ -83,12 +83,12 @@ void complete_step(FreeBody& body, const FreeMotion& f, const Eigen::Vector3d& m
   body.velocity_m_s = mean_m_s;
   body.step_s = h;
   body.centre_m += h * mean_m_s + offset_m;
-  const bool struck = blow.time_s >= 0;
-  if (!struck && mean_rad_s == f.mean_rad_s) {
+  if (blow.time_s < 0) {
+    // The rotation for which the contacts were solved.
     body.orientation = turned(body.orientation, h * mean_rad_s + offset_rad);
   } else {
-    if (struck) body.orientation = turned(body.orientation, blow.turn_rad);
-    const double left = struck ? h - blow.time_s : h;
+    body.orientation = turned(body.orientation, blow.turn_rad);
+    const double left = h - blow.time_s;
     const Eigen::Vector3d spin = in_world(body.orientation, body.inertia_kg_m2).inverse() * momentum;
     const bool even = spin.norm() * left < kHardlyTurns_rad || is_even(body.inertia_kg_m2);
     body.orientation = turned(body.orientation, left * (even ? spin : mean_spin(body, momentum, spin, left)));

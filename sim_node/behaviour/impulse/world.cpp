@@ -193,7 +193,10 @@ void World::finish(double h) {
       FreeBody& b = free_[i];
       const Twist &v = velocity_.twists[i + 1], &x = position_offset_.twists[i + 1];
       const Blow& blow = collisions_.blow_of(i + 1);
-      const Eigen::Vector3d beyond = blow.time_s < 0 ? x.angular_rad_s : Eigen::Vector3d(x.angular_rad_s - collisions_.offset_rad(i + 1));
+      // A struck body turns at its new velocity from its impact on. The contact solver counted on the whole step.
+      Eigen::Vector3d beyond = x.angular_rad_s;
+      if (blow.time_s >= 0)
+        beyond += blow.time_s * (v.angular_rad_s - before_contacts_.twists[i + 1].angular_rad_s) - collisions_.offset_rad(i + 1);
       complete_step(b, free_motions_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, beyond, blow, h);
       motions_[index(body_of_[i])] = motion_of(b);
     } else {
