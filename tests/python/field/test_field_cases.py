@@ -1,6 +1,7 @@
 """A table of inputs from the field: each is given to the program that reads it, and its answer is compared with the right one (tests/data/field/README.md)."""
 import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -18,6 +19,12 @@ CASES = ROOT / "tests" / "data" / "field"
 GRAVITY_M_S2, SPRING_N_M = 10, 1000
 # Elements without effect here: the line of the warning, and a word of it.
 IGNORED = {"ball.sdf": None, "local.sdf": None, "moon.sdf": (1, "spherical_coordinates"), "remote.sdf": (2, "fuel.gazebosim.org"), "sensor.sdf": (2, "sensor")}
+# Touching bodies: the place of each moving body and its tolerance, m; None: where it begins. 0.1 mm of overlap may part the bodies by that.
+OVERLAP_M = 1e-4
+TOUCHING = {
+    "on_box.sdf": ((0, 0, 0.05), 1e-5), "depth_1e-4.sdf": ((0, 0, 0.05), 1e-5 + OVERLAP_M),
+    "two.sdf": ((0, 0, None), 1e-6), "dyn_box_under.sdf": ((0, 0, None), 2 * OVERLAP_M),
+}
 HOUR_US = 3600 * 1_000_000
 
 
@@ -51,6 +58,21 @@ class FieldCases(unittest.TestCase):
         for fields in snapshots.values():
             bodies.setdefault(int(fields["body"]), []).append(fields)
         return bodies
+
+    def test_bodies_whose_faces_touch_at_the_start_rest(self):
+        for name, (place, tolerance_m) in TOUCHING.items():
+            for groups in ("single", "dual"):
+                with self.subTest(f"{name}, {groups}"):
+                    self.run_world(f"mesh_touching/{name}", 1, "--set", f"sim_node.groups={groups}")
+                    bodies = self.states()
+                    self.assertTrue(bodies)
+                    for states in bodies.values():
+                        start = [states[0][f"position_m.{axis}"] for axis in "xyz"]
+                        wanted = [at if want is None else want for at, want in zip(start, place)]
+                        for fields in states:
+                            for axis, want in zip("xyz", wanted):
+                                self.assertTrue(math.isfinite(fields[f"position_m.{axis}"]), fields)
+                                self.assertAlmostEqual(want, fields[f"position_m.{axis}"], delta=tolerance_m)
 
     def test_elements_without_effect_load_with_a_warning_that_names_their_line(self):
         for name, warning in IGNORED.items():
