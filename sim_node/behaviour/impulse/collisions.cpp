@@ -330,7 +330,6 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
   velocity_ = &velocity;
   position_offset_ = &position_offset;
   h_ = h;
-  blows_.assign(velocity.twists.size(), {});
   approach_.resize(rows.groups.size());
   for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
   const std::size_t max_impacts = kMaxImpacts * rows.groups.size();

@@ -31,6 +31,11 @@ class Collisions {
   void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, const Velocities& drift,
                Velocities& velocity, Velocities& position_offset);
 
+  // Before resolve(): forgets the impacts of a free body. The cost of a step depends on the bodies that take part only.
+  void begin_step(std::size_t twist) {
+    if (blows_.size() <= twist) blows_.resize(twist + 1);
+    blows_[twist] = {};
+  }
   // The last impact of a free body (index of its twist) in the step, and its rotation offset by all impacts, rad.
   const Blow& blow_of(std::size_t twist) const { return blows_[twist].last; }
   const Eigen::Vector3d& offset_rad(std::size_t twist) const { return blows_[twist].offset_rad; }

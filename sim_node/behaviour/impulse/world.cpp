@@ -79,6 +79,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
       velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
       drift_.twists[i + 1] = {f.mean_m_s - f.start_m_s, f.mean_rad_s - f.start_rad_s};
       position_offset_.twists[i + 1] = {};
+      collisions_.begin_step(i + 1);
       rows_.inertias[i + 1] = {1 / b.mass_kg, f.inverse_inertia};
     } else {
       System& s = systems_[i - free_.size()];

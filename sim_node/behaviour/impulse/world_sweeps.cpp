@@ -58,7 +58,17 @@ void World::limit_warm_start() {
 
 void World::sweep(double h) {
   const double settled_m_s = law_.convergence_m_s2 * h;
-  before_contacts_ = velocity_;
+  before_contacts_.twists.resize(velocity_.twists.size());
+  before_contacts_.rates.resize(velocity_.rates.size());
+  for (const int unit : active_) {
+    const std::size_t i = index(unit);
+    if (i < free_.size()) {
+      before_contacts_.twists[i + 1] = velocity_.twists[i + 1];
+      continue;
+    }
+    const std::size_t s = i - free_.size();
+    std::copy_n(velocity_.rates.data() + first_rate_[s], first_rate_[s + 1] - first_rate_[s], before_contacts_.rates.data() + first_rate_[s]);
+  }
   for (const ContactPoint& p : rows_.points)
     if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
   for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
