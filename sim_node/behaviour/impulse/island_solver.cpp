@@ -192,9 +192,16 @@ void IslandSolver::linearise(const ContactRows& rows, std::span<const int> point
   }
 }
 
-// Solves jacobian_ * step_ = step_ in place, by elimination with row pivots. Returns false when it is singular.
+// Solves jacobian_ * step_ = step_ in place, by elimination with row pivots. Returns false when it is singular. Points
+// that share no body leave zeros, so that most rows of a tower end early.
 bool IslandSolver::eliminate() {
   const std::size_t n = n_;
+  end_.resize(n);
+  for (std::size_t r = 0; r < n; ++r) {
+    const double* row = jacobian_.data() + r * n;
+    end_[r] = n;
+    while (end_[r] > 0 && row[end_[r] - 1] == 0) --end_[r];
+  }
   for (std::size_t c = 0; c < n; ++c) {
     std::size_t pivot = c;
     for (std::size_t r = c + 1; r < n; ++r)
@@ -205,19 +212,21 @@ bool IslandSolver::eliminate() {
       std::swap_ranges(jacobian_.begin() + static_cast<std::ptrdiff_t>(c * n), jacobian_.begin() + static_cast<std::ptrdiff_t>((c + 1) * n),
                        jacobian_.begin() + static_cast<std::ptrdiff_t>(pivot * n));
       std::swap(step_[c], step_[pivot]);
+      std::swap(end_[c], end_[pivot]);
     }
     const double* top = jacobian_.data() + c * n;
     for (std::size_t r = c + 1; r < n; ++r) {
       double* row = jacobian_.data() + r * n;
       if (row[c] == 0) continue;
       const double share = row[c] / largest;
-      for (std::size_t k = c + 1; k < n; ++k) row[k] -= share * top[k];
+      for (std::size_t k = c + 1; k < end_[c]; ++k) row[k] -= share * top[k];
+      end_[r] = std::max(end_[r], end_[c]);
       step_[r] -= share * step_[c];
     }
   }
   for (std::size_t c = n; c-- > 0;) {
     double sum = step_[c];
-    for (std::size_t k = c + 1; k < n; ++k) sum -= jacobian_[c * n + k] * step_[k];
+    for (std::size_t k = c + 1; k < end_[c]; ++k) sum -= jacobian_[c * n + k] * step_[k];
     step_[c] = sum / jacobian_[c * n + c];
     if (!std::isfinite(step_[c])) return false;
   }
