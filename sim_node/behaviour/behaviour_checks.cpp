@@ -12,7 +12,7 @@ namespace {
 // Number of points that may press on a body in one direction: one for a ball, four for a face.
 int points_of(const WorldDef& world, int body) {
   for (const ShapeDef& s : world.shapes)
-    if (s.body == body && s.kind != ShapeKind::kSphere) return kMaxManifoldPoints;
+    if (s.body == body && s.kind != ShapeKind::kSphere) return kMaxFacePoints;
   return 1;
 }
 

@@ -49,6 +49,7 @@ dBodyID Solver::Engine::make_body(const BodyDef& def, const Eigen::Vector3d& gra
   Eigen::Vector3d v = def.velocity_m_s;
   if (def.gravity) v -= gravity_m_s2 * (step_s / 2);
   dBodySetLinearVel(id, v.x(), v.y(), v.z());
+  dBodySetAngularVel(id, def.spin_rad_s.x(), def.spin_rad_s.y(), def.spin_rad_s.z());
   dBodySetGravityMode(id, def.gravity);
   dBodySetAutoDisableFlag(id, 0);
   dBodySetLinearDamping(id, std::min(1.0, def.linear_damping_1_s * step_s));

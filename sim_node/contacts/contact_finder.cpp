@@ -81,7 +81,10 @@ void ContactFinder::detect_pair(const NearPair& pair, std::vector<Manifold>& out
     std::erase_if(pairs_, [](const PointPair& p) { return !is_sound(p); });
     found = std::none_of(pairs_.begin(), pairs_.end(), [](const PointPair& p) { return p.pierced; });
   }
-  if (!found) query(*gaps_, number_);
+  if (!found) {
+    query(*gaps_, number_);
+    std::erase_if(pairs_, [](const PointPair& p) { return !is_sound(p); });
+  }
   if (pairs_.empty()) return;
   points_.clear();
   for (const PointPair& p : pairs_) points_.push_back(point_of(p));

@@ -277,7 +277,8 @@ void ContactTracker::describe(const LiveContact& c, std::span<const BodyMotion> 
       to_vec3f(tangential(b.velocity_at(c.position_m) - a.velocity_at(c.position_m), deepest.normal));
   out.rolling_velocity_m_s = to_vec3f(c.rolling_m_s);
   out.points.clear();
-  for (const ManifoldPoint& p : m.used()) {
+  // A message has room for the points of one face: the first, which is the nearest.
+  for (const ManifoldPoint& p : m.used().first(std::min(m.used().size(), std::size_t{kMaxFacePoints}))) {
     const Vector3d on_a = p.point_m + 0.5 * p.depth_m * p.normal, on_b = p.point_m - 0.5 * p.depth_m * p.normal;
     contact_point_t& q = out.points.emplace_back();
     q.a_world_m = to_vec3(on_a);

@@ -18,7 +18,7 @@
 namespace tactus::sim {
 
 // Increase it with every change of the content of a state: a state of another version is rejected.
-inline constexpr std::uint64_t kStateVersion = 4;
+inline constexpr std::uint64_t kStateVersion = 5;
 
 std::vector<std::uint8_t> wrap_state(std::span<const std::uint8_t> state, std::uint64_t fingerprint);
 // Returns the state inside. Throws InvalidState with one sentence when the bytes are damaged, or of another

@@ -24,7 +24,7 @@ void reduce_points(std::span<const ManifoldPoint> found, Manifold& out) {
     return a.depth_m < b.depth_m;
   });
   out.points[static_cast<std::size_t>(out.count++)] = *deepest;
-  while (out.count < kMaxManifoldPoints) {
+  while (out.count < kMaxFacePoints) {
     const ManifoldPoint* best = nullptr;
     double best_distance = kSamePosition_m;
     for (const ManifoldPoint& p : found) {

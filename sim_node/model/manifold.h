@@ -1,5 +1,5 @@
-// Contact manifold: result of a collision query for one pair of shapes, with up to four points that represent the
-// contact.
+// Contact manifold: result of a collision query for one pair of shapes, with up to four points for each direction in
+// which their surfaces face each other, of up to three directions.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +32,8 @@ struct Impact {
   int triangle_a = -1, triangle_b = -1;
 };
 
-inline constexpr int kMaxManifoldPoints = 4;
+inline constexpr int kMaxFacePoints = 4, kMaxFaces = 3;
+inline constexpr int kMaxManifoldPoints = kMaxFacePoints * kMaxFaces;
 
 struct Manifold {
   int shape_a = -1, shape_b = -1;
@@ -60,7 +61,8 @@ struct Manifold {
 };
 
 // Selects the deepest point, then repeatedly the one furthest from those selected: the corners of the patch. Without
-// this reduction the stiffness of a contact would depend on its tessellation. Fills out.points and out.count.
+// this reduction the stiffness of a contact would depend on its tessellation. Fills out.points and out.count with at
+// most kMaxFacePoints.
 void reduce_points(std::span<const ManifoldPoint> found, Manifold& out);
 
 }  // namespace tactus::sim

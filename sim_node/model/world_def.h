@@ -57,7 +57,8 @@ struct BodyDef {
   Eigen::Vector3d centre_of_mass_m{0, 0, 0};                 // in the body frame
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // about the centre of mass, body axes
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();    // world
-  Eigen::Vector3d velocity_m_s{0, 0, 0};                     // at the start, world
+  Eigen::Vector3d velocity_m_s{0, 0, 0};                     // of the centre of mass at the start, world
+  Eigen::Vector3d spin_rad_s{0, 0, 0};                       // at the start, world
   bool gravity = true;
   double linear_damping_1_s = 0;   // SDF velocity_decay
   double angular_damping_1_s = 0;

@@ -22,6 +22,8 @@ constexpr double kDefaultFriction = 1;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Pairs of links of all models that do not collide with each other: 80 MB. A model of 4,000 links has 8 million.
 constexpr std::size_t kMaxPairs = 10'000'000;
+// Limits of initial velocities: above those of any scene that a step of 1 ms can resolve. Design values.
+constexpr double kMaxSpeed_m_s = 1000, kMaxSpin_rad_s = 10000;
 
 double in_range(const sdf::Element& element, double value, double min, double max) {
   if (!(value >= min && value <= max))
@@ -95,6 +97,16 @@ void find_camera(LoadContext& context, const sdf::Element& link, const Eigen::Is
   }
 }
 
+// Three numbers of an element of a link, for example <tactus:velocity>1 0 0.5</tactus:velocity>; zero without it.
+Eigen::Vector3d initial_rate(const sdf::Element& link, std::string_view name, double max) {
+  const sdf::Element* given = link.child(name);
+  if (!given) return {0, 0, 0};
+  const Eigen::Vector3d rate = sdf::vector3(*given);
+  if (!(rate.norm() <= max))
+    sdf::reject(*given, "= \"" + std::string(given->text) + "\" must be at most " + std::to_string(static_cast<long>(max)) + " as a vector");
+  return rate;
+}
+
 int add_link(LoadContext& context, const sdf::Element& link, const Eigen::Isometry3d& model_pose, const std::string& scope,
              bool is_static, int inherited) {
   const int index = static_cast<int>(context.world.bodies.size());
@@ -117,6 +129,8 @@ int add_link(LoadContext& context, const sdf::Element& link, const Eigen::Isomet
     };
     body.linear_damping_1_s = damping("linear"), body.angular_damping_1_s = damping("angular");
   }
+  body.velocity_m_s = initial_rate(link, "tactus:velocity", kMaxSpeed_m_s);
+  body.spin_rad_s = initial_rate(link, "tactus:spin", kMaxSpin_rad_s);
   find_camera(context, link, body.pose);
   for (const sdf::Element& light : link.children("light")) {
     if (!is_static) context.warn(light, "stays where it is when its link moves");

@@ -27,7 +27,7 @@ const std::map<std::string, Names, std::less<>> kSupported{
                "tactus:surface"}},
     {"frame", {"pose"}},
     {"link", {"pose", "inertial", "collision", "visual", "light", "velocity_decay", "gravity", "self_collide",
-              "tactus:surface"}},
+              "tactus:surface", "tactus:velocity", "tactus:spin"}},
     {"inertial", {"pose", "mass", "inertia", "density"}},
     {"collision", {"pose", "geometry", "density", "surface", "tactus:surface"}},
     {"surface", {"bounce", "friction"}},

@@ -152,13 +152,15 @@ void AdaptiveStepper::resolve_overlaps(World& world, ContactSource& source, doub
   }
 }
 
-// Last resort: a body whose overlap has grown in the step returns to its start pose, at rest. Its counterpart has
-// moved away or is held too. In the end all bodies are at poses without overlap.
-void AdaptiveStepper::reset_overlapping_units(World& world, ContactSource& source, double next,
+// Last resort: a body whose overlap has grown in the step returns to its start pose, and the impact that its contacts
+// did not predict is resolved. Its counterpart has moved away or is held too. In the end all bodies are at poses without
+// overlap.
+void AdaptiveStepper::reset_overlapping_units(World& world, ContactSource& source, double next, double dt,
                                               std::span<const Manifold> before) {
   reset_units_.clear();
-  for (bool changed = true; changed;) {
+  for (bool changed = max_new_overlap_m(before, kMaxOverlap_m) > 0; changed;) {
     changed = false;
+    world.stop_approach(new_contacts_, kMaxOverlap_m);
     for_each_new_overlap(new_contacts_, before, kMaxOverlap_m, [&](const Manifold& m, double) {
       for (const int body : {m.body_a, m.body_b}) {
         const int unit = world.unit_of(body);
@@ -166,7 +168,7 @@ void AdaptiveStepper::reset_overlapping_units(World& world, ContactSource& sourc
         if (unit < 0 || !std::binary_search(active.begin(), active.end(), unit)) continue;
         if (std::find(reset_units_.begin(), reset_units_.end(), unit) != reset_units_.end()) continue;
         reset_units_.push_back(unit);
-        world.hold(unit, saved_);
+        world.hold(unit, saved_, dt);
         changed = true;
       }
     });
@@ -239,10 +241,14 @@ const RecoveryReport& AdaptiveStepper::step(World& world, ContactSource& source,
       assumed_[static_cast<std::size_t>(body)] = world.motions()[static_cast<std::size_t>(body)];
     while (!try_substep(world, source, dt, finest, next_h, contacts)) {
     }
+    const IslandSolver::Result& convergence = world.convergence();
+    report_.residual_m_s = std::max(report_.residual_m_s, convergence.residual_m_s);
+    report_.unconverged = std::max(report_.unconverged, convergence.unconverged);
+    report_.limited = std::max(report_.limited, convergence.limited);
     const double next = horizon_s(world, next_h);
     merge_substep(solved, contacts, elapsed, dt, h);
     resolve_overlaps(world, source, next);
-    reset_overlapping_units(world, source, next, contacts);
+    reset_overlapping_units(world, source, next, dt, contacts);
     std::swap(contacts, new_contacts_);
     elapsed += dt;
     dt = std::min({2 * dt, next, h});

@@ -52,7 +52,7 @@ class AdaptiveStepper {
   bool has_new_pair(std::span<const Manifold> contacts) const;
   double max_new_overlap_m(std::span<const Manifold> before, double limit_m) const;
   void resolve_overlaps(World& world, ContactSource& source, double next_s);
-  void reset_overlapping_units(World& world, ContactSource& source, double next_s,
+  void reset_overlapping_units(World& world, ContactSource& source, double next_s, double dt,
                                std::span<const Manifold> before);
   void merge_substep(std::vector<Manifold>& solved, std::span<const Manifold> substep, double begun_s, double dt,
                      double h_s);

@@ -97,6 +97,7 @@ class Builder {
     out.orientation = Eigen::Quaterniond(b.pose.linear()).normalized();
     out.step_s = 0;  // the velocity is the current one
     out.velocity_m_s = b.velocity_m_s;
+    out.spin_rad_s = b.spin_rad_s;
     return out;
   }
   void begin(int body, const JointDef* joint, bool reversed) {
@@ -157,10 +158,15 @@ class Builder {
     std::vector<double> rates(system.tree().dofs.size());
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const BodyDef& b = def_.bodies[index(bodies_[i])];
-      if (b.velocity_m_s.isZero(0)) continue;
       const int link = static_cast<int>(i);
-      articulated::Dynamics& d = system.dynamics();
-      d.impulse_to_rates(link, d.centre_m(link), b.mass_kg * b.velocity_m_s, rates);
+      if (!b.velocity_m_s.isZero(0)) {
+        articulated::Dynamics& d = system.dynamics();
+        d.impulse_to_rates(link, d.centre_m(link), b.mass_kg * b.velocity_m_s, rates);
+        system.add_rates(rates);
+      }
+      if (b.spin_rad_s.isZero(0)) continue;
+      const Eigen::Matrix3d turn = b.pose.linear();
+      system.dynamics().angular_impulse_to_rates(link, turn * (b.inertia_kg_m2 * (turn.transpose() * b.spin_rad_s)), rates);
       system.add_rates(rates);
     }
   }

@@ -42,6 +42,7 @@ struct ContactPoint {
   double friction = 0;
   double gap_m = 0;            // at the start of the step; negative: overlap
   double min_speed_m_s = 0;  // minimum separating speed of the contact; negative: the gap may close at this speed
+  double correction_m = 0;     // part of an overlap that positions correct in this step
   Eigen::Vector3d drift_m_s;   // of its velocity, from the start of the step to its mean, without impulses
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  // N s, over the step
   double impact_N_s = 0;                              // along the normal, of the collision phase

@@ -78,12 +78,22 @@ FreeMotion free_motion(const FreeBody& body, double h) {
 
 void complete_step(FreeBody& body, const FreeMotion& f, const Eigen::Vector3d& mean_m_s,
                    const Eigen::Vector3d& mean_rad_s, const Eigen::Vector3d& offset_m,
-                   const Eigen::Vector3d& offset_rad, double h) {
+                   const Eigen::Vector3d& offset_rad, const Blow& blow, double h) {
   const Eigen::Vector3d momentum = f.spin_momentum + f.inertia * (mean_rad_s - f.mean_rad_s);
   body.velocity_m_s = mean_m_s;
   body.step_s = h;
   body.centre_m += h * mean_m_s + offset_m;
-  body.orientation = turned(body.orientation, h * mean_rad_s + offset_rad);
+  if (blow.time_s < 0) {
+    // The rotation for which the contacts were solved.
+    body.orientation = turned(body.orientation, h * mean_rad_s + offset_rad);
+  } else {
+    body.orientation = turned(body.orientation, blow.turn_rad);
+    const double left = h - blow.time_s;
+    const Eigen::Vector3d spin = in_world(body.orientation, body.inertia_kg_m2).inverse() * momentum;
+    const bool even = spin.norm() * left < kHardlyTurns_rad || is_even(body.inertia_kg_m2);
+    body.orientation = turned(body.orientation, left * (even ? spin : mean_spin(body, momentum, spin, left)));
+    body.orientation = turned(body.orientation, offset_rad);
+  }
   const Eigen::Matrix3d r = body.orientation.toRotationMatrix();
   body.spin_rad_s = r * (body.inertia_kg_m2.inverse() * (r.transpose() * momentum));
   body.force_N.setZero();

@@ -32,14 +32,22 @@ struct FreeMotion {
   Eigen::Vector3d start_rad_s, mean_rad_s;   // angular velocity; rotation with the mean through the step gives the free orientation
 };
 
+// The last impact of a body within a step, after which it rotates with other angular momentum.
+struct Blow {
+  double time_s = -1;  // after the start of the step; negative: none
+  Eigen::Vector3d turn_rad = Eigen::Vector3d::Zero();  // rotation up to then
+};
+
 // Integrates the rotation of a torque-free body with exact angular momentum, by the classical Runge-Kutta method
 // (Hairer, Norsett and Wanner 1993, table II.1.2). Real-time safe: yes.
 FreeMotion free_motion(const FreeBody& body, double h_s);
 
-// Completes a step in which the body moved with these mean velocities and got these offsets (m, rad).
+// Completes a step in which the body moved with these mean velocities and got these offsets (m, rad). Angular momentum
+// is exact, and rotation follows it, so that the kinetic energy of a body with unequal inertias does not drift. blow:
+// its rotation up to the last impact; offset_rad then is that beyond the impacts.
 void complete_step(FreeBody& body, const FreeMotion& motion, const Eigen::Vector3d& mean_m_s,
                    const Eigen::Vector3d& mean_rad_s, const Eigen::Vector3d& offset_m,
-                   const Eigen::Vector3d& offset_rad, double h_s);
+                   const Eigen::Vector3d& offset_rad, const Blow& blow, double h_s);
 
 // Moves a body by an offset (m, rad); its velocities do not change.
 void displace(FreeBody& body, const Eigen::Vector3d& by_m, const Eigen::Vector3d& by_rad);

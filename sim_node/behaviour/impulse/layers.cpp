@@ -8,7 +8,6 @@ namespace {
 constexpr int kFlies = 1 << 20;
 constexpr int kMaxLayers = 256;   // bodies above count as flying
 constexpr std::size_t kInterleaved = 8;  // number of interleaved groups; design: hides the latency of one point
-constexpr int kSweeps = 5;         // over the points of one group; design: four corners converge to 1 %
 
 }  // namespace
 
@@ -50,35 +49,6 @@ void ContactLayers::find(const ContactRows& rows, int movers) {
       if (points_.size() == before) break;
     }
   }
-}
-
-void ContactLayers::propagate_shock(ContactRows& rows, Velocities& v) {
-  std::swap(above_.inertias, rows.inertias);
-  for (const int number : order_) {
-    const ContactGroup& g = rows.groups[static_cast<std::size_t>(number)];
-    const int low = std::min(layer_of(g.mover_a), layer_of(g.mover_b));
-    if (low >= kFlies || low == 0 || layer_of(g.mover_a) == layer_of(g.mover_b)) continue;
-    const bool b_above = layer_of(g.mover_b) > layer_of(g.mover_a);
-    ContactPoint* first = rows.points.data() + g.first;
-    if (first->couplings > 0) continue;
-    // The velocity of the lower body is stored as drift, so that the point can be solved as if the body were static.
-    above_.points.assign(first, first + g.count);
-    for (ContactPoint& p : above_.points) {
-      const Eigen::Vector3d both = rows.velocity(p, v);
-      (b_above ? p.a : p.b) = 0;
-      p.drift_m_s = both - above_.velocity(p, v);
-      above_.compute_mobility(p);
-    }
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
-      for (ContactPoint& p : above_.points) {
-        Eigen::Vector3d u = above_.velocity(p, v) + p.drift_m_s;
-        u.x() -= p.min_speed_m_s;
-        const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, u), by = next - p.impulse;
-        p.impulse = next;
-        above_.apply(p, by, v);
-      }
-  }
-  std::swap(above_.inertias, rows.inertias);
 }
 
 }  // namespace tactus::sim::impulse

@@ -15,7 +15,7 @@ namespace tactus::sim::impulse {
 class WarmStart {
  public:
   // Sets point.impulse from the force of the nearest point, in the frame of the moving body, of the same pair of
-  // shapes. contacts: those of the groups, ordered by their shapes. poses: of every body, at the start of the step.
+  // shapes and the same face. The impulse lies in the friction cone. contacts: those of the groups, ordered by their shapes. poses: of every body, at the start of the step.
   void recall(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, ContactRows& rows) const;
   // Stores the impulses of this step.
   void store(std::span<const Manifold> contacts, std::span<const BodyMotion> poses, const ContactRows& rows);
@@ -26,6 +26,7 @@ class WarmStart {
   struct StoredPoint {
     int shape_a = -1, shape_b = -1;
     Eigen::Vector3d position_m;  // in the frame of the moving body
+    Eigen::Vector3d normal;   // world
     Eigen::Vector3d force_N;  // world, on b
     double shell_m = -1;      // as in ContactPoint
   };

@@ -79,6 +79,7 @@ void World::start_velocities(std::span<const Manifold> contacts, double h) {
       velocity_.twists[i + 1] = {f.start_m_s, f.start_rad_s};
       drift_.twists[i + 1] = {f.mean_m_s - f.start_m_s, f.mean_rad_s - f.start_rad_s};
       position_offset_.twists[i + 1] = {};
+      collisions_.begin_step(i + 1);
       rows_.inertias[i + 1] = {1 / b.mass_kg, f.inverse_inertia};
     } else {
       System& s = systems_[i - free_.size()];
@@ -185,72 +186,6 @@ void World::build_joints(double h) {
     }
 }
 
-// Sets the minimum separating speeds: a gap closes at most to zero, and an overlap is corrected gently.
-void World::set_required_speeds(double h) {
-  const auto correction_speed = [&](double overlap) {
-    return std::min(law_.max_correction_speed_m_s,
-                    law_.correction_share * std::max(0.0, overlap - law_.slop_m) / h);
-  };
-  for (ContactPoint& p : rows_.points) {
-    const double offset = rows_.velocity(p, position_offset_).x(), gap = p.gap_m + offset;
-    if (p.gap_m >= 0 || gap >= 0)
-      p.min_speed_m_s = -gap / h;
-    else if (offset < 0)
-      p.min_speed_m_s = -offset / h + correction_speed(-p.gap_m);
-    else
-      p.min_speed_m_s = correction_speed(-gap);
-  }
-}
-
-void World::sweep(double h) {
-  const double settled_m_s = law_.convergence_m_s2 * h;
-  for (const ContactPoint& p : rows_.points)
-    if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
-  for (const JointRow& row : joints_) apply(row, row.impulse, rows_.pool, velocity_);
-  // Converged points are skipped until one of their sides changes.
-  last_change_.resize(free_.size() + systems_.size() + 2);
-  for (const ContactGroup& g : rows_.groups)
-    for (const int moved : {g.mover_a, g.mover_b}) last_change_[index(moved + 1)] = 0;
-  for (const JointRow& row : joints_) last_change_[index(row.mover + 1)] = 0;
-  int visits = 0;
-  const auto point = [&](ContactPoint& p) {
-    int &a = last_change_[index(p.mover_a)], &b = last_change_[index(p.mover_b)];
-    if (a <= p.visit && b <= p.visit) return 0.0;
-    p.visit = visits;
-    Eigen::Vector3d v = rows_.velocity(p, velocity_);
-    v.x() -= p.min_speed_m_s;
-    const Eigen::Vector3d next = ContactRows::solve_point(p, p.impulse, v);
-    const Eigen::Vector3d by(next[0] - p.impulse[0], next[1] - p.impulse[1], next[2] - p.impulse[2]);
-    const double change = std::max({std::abs(by[0]), std::abs(by[1]), std::abs(by[2])}) * p.mobility(0, 0);
-    if (change == 0) return 0.0;
-    p.impulse[0] = next[0], p.impulse[1] = next[1], p.impulse[2] = next[2];
-    rows_.apply(p, by, velocity_);
-    if (change >= settled_m_s) {
-      ++visits;
-      if (p.mover_a) a = visits;
-      if (p.mover_b) b = visits;
-    }
-    return change;
-  };
-  const auto joint = [&](JointRow& row) {
-    const double change = impulse::sweep(row, rows_.pool, velocity_);
-    if (change >= settled_m_s) last_change_[index(row.mover + 1)] = ++visits;
-    return change;
-  };
-  for (sweeps_ = 0; sweeps_ < law_.sweeps;) {
-    double change = 0;
-    const auto visit = [&](int number) { change = std::max(change, point(rows_.points[index(number)])); };
-    for (JointRow& row : joints_) change = std::max(change, joint(row));
-    const auto& order = layers_.points();
-    // Alternates the direction, so that information travels through a stack both ways.
-    if (sweeps_++ % 2 == 0)
-      for (auto number = order.begin(); number != order.end(); ++number) visit(*number);
-    else
-      for (auto number = order.rbegin(); number != order.rend(); ++number) visit(*number);
-    if (change < settled_m_s) break;
-  }
-}
-
 void World::finish(double h) {
   const sync::ScopedPhaseTimer phase(sync::Phase::kIntegrate);
   for (const int unit : active_) {
@@ -258,7 +193,12 @@ void World::finish(double h) {
     if (i < free_.size()) {
       FreeBody& b = free_[i];
       const Twist &v = velocity_.twists[i + 1], &x = position_offset_.twists[i + 1];
-      complete_step(b, free_motions_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, x.angular_rad_s, h);
+      const Blow& blow = collisions_.blow_of(i + 1);
+      // A struck body turns at its new velocity from its impact on. The contact solver counted on the whole step.
+      Eigen::Vector3d beyond = x.angular_rad_s;
+      if (blow.time_s >= 0)
+        beyond += blow.time_s * (v.angular_rad_s - before_contacts_.twists[i + 1].angular_rad_s) - collisions_.offset_rad(i + 1);
+      complete_step(b, free_motions_[i], v.linear_m_s, v.angular_rad_s, x.linear_m_s, beyond, blow, h);
       motions_[index(body_of_[i])] = motion_of(b);
     } else {
       finish(i - free_.size(), h);
@@ -312,15 +252,28 @@ void World::write_results(std::span<Manifold> contacts, double h) const {
       m.points[index(i)].normal_force_N = p.impact_N_s / h + p.impulse.x() / p.force_time_s;
     }
     m.impact = {};
-    if (g.first_impact_point < 0 || m.points[index(g.first_impact_point)].normal_force_N <= 0) continue;
-    const ManifoldPoint& at = m.points[index(g.first_impact_point)];
+    if (g.first_impact_point < 0) continue;
+    // Where the point that would meet first takes no impulse, the impact is at the fastest of those that do.
+    int struck = g.first_impact_point;
+    double speed = g.speed_m_s;
+    if (m.points[index(struck)].normal_force_N <= 0) {
+      struck = -1;
+      for (int i = 0; i < g.count; ++i) {
+        const double closing = -rows_.velocity(rows_.points[index(g.first + i)], before_contacts_).x();
+        if (m.points[index(i)].normal_force_N <= 0 || (struck >= 0 && closing <= speed)) continue;
+        struck = i;
+        speed = closing;
+      }
+      if (struck < 0) continue;
+    }
+    const ManifoldPoint& at = m.points[index(struck)];
     const Eigen::Vector3d half = at.depth_m / 2 * at.normal, on_a = at.point_m + half, on_b = at.point_m - half;
     const BodyMotion &a = motions_[index(m.body_a)], &b = motions_[index(m.body_b)];
     m.impact.count = std::max(1, g.impacts);
     m.impact.first_s = std::min(g.first_s, h);
     m.impact.last_s = std::min(g.last_s, h);
-    m.impact.speed_m_s = g.speed_m_s;
-    m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + g.first_impact_point)].mobility(0, 0);
+    m.impact.speed_m_s = speed;
+    m.impact.effective_mass_kg = 1 / rows_.points[index(g.first + struck)].mobility(0, 0);
     const Eigen::Vector3d met_a = on_a + g.first_s * a.velocity_at(on_a),
                           met_b = on_b + g.first_s * b.velocity_at(on_b);
     m.impact.position_m = (met_a + met_b) / 2;
@@ -340,14 +293,19 @@ void World::step(std::span<Manifold> contacts, double h) {
   build_joints(h);
   warm_.recall(contacts, motions_, rows_);
   const bool has_penalty = law_.penalty.stiffness_N_m > 0;
+  if (!has_penalty) limit_warm_start();
   if (has_penalty) set_penalty_shells(rows_, law_.penalty, velocity_, h);
-  collisions_.resolve(rows_, h, first_rate_, velocity_, position_offset_);
+  collisions_.resolve(rows_, h, first_rate_, drift_, velocity_, position_offset_);
+  shift_arms();
   add_drift();
   set_required_speeds(h);
   if (has_penalty) set_penalty_forces(rows_, law_.penalty, velocity_, h);
   layers_.find(rows_, static_cast<int>(free_.size() + systems_.size()) + 1);
   sweep(h);
-  if (sweeps_ == law_.sweeps) layers_.propagate_shock(rows_, velocity_);
+  if (convergence_.unconverged > 0 && !has_penalty)
+    convergence_ = islands_.refine(rows_, joints_, static_cast<int>(free_.size() + systems_.size()) + 1,
+                                   law_.convergence_m_s2 * h, before_contacts_, velocity_);
+  if (has_corrections_ || convergence_.unconverged > 0) correct_positions(h);
   warm_.store(contacts, motions_, rows_);
   for (const JointRow& row : joints_) *row.memory = row.impulse;
   write_results(contacts, h);

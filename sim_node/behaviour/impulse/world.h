@@ -10,6 +10,7 @@
 #include "sim_node/behaviour/impulse/collisions.h"
 #include "sim_node/behaviour/impulse/contact_rows.h"
 #include "sim_node/behaviour/impulse/free_body.h"
+#include "sim_node/behaviour/impulse/island_solver.h"
 #include "sim_node/behaviour/impulse/joint_rows.h"
 #include "sim_node/behaviour/impulse/layers.h"
 #include "sim_node/behaviour/impulse/penalty.h"
@@ -108,8 +109,12 @@ class World {
   void restore(const SavedStep& saved);
   // Applies the loads of the saved step to the next step too.
   void restore_loads(const SavedStep& saved);
-  // Resets a unit to its saved pose, at rest.
-  void hold(int unit, const SavedStep& saved);
+  // Resets a unit to its saved pose. It keeps its momentum, except that which gravity added in the step of step_s.
+  void hold(int unit, const SavedStep& saved, double step_s);
+  // Resolves the approach of overlapping surfaces as an impact without restitution and friction: impulses act on both
+  // sides, so that momentum is constant, and take energy. contacts: of the current poses; those that are not deeper
+  // than min_overlap_m are ignored.
+  void stop_approach(std::span<const Manifold> contacts, double min_overlap_m);
   // Resolves overlaps by the smallest displacement that the contacts allow, weighted by inertia. Changes positions
   // only, not velocities. contacts: of the current poses. Overlaps deeper than max_overlap_m are ignored.
   void separate(std::span<const Manifold> contacts, double max_overlap_m);
@@ -133,6 +138,8 @@ class World {
   // After a step, velocities are the means over it. position: the centre of mass.
   std::span<const BodyMotion> motions() const { return motions_; }
   int sweeps_last() const { return sweeps_; }
+  // Convergence of the contacts in the last step.
+  const IslandSolver::Result& convergence() const { return convergence_; }
   bool moves(int body) const { return movers_[index(body)].kind != Kind::kFixed; }
 
  private:
@@ -162,6 +169,9 @@ class World {
   int dof_of(int body, int axis) const;
   static void place(BodyMotion& m, const BodyMotion& at);
   void sweep(double h_s);
+  void limit_warm_start();
+  void shift_arms();
+  void correct_positions(double h_s);
   void finish(double h);
   void finish(std::size_t system, double h);
   int mover_number(const Mover& m) const;
@@ -188,7 +198,13 @@ class World {
   std::vector<FreeMotion> free_motions_;    // of free bodies
   std::vector<double> force_time_s_;        // per free body: time from the middle of the previous step to the middle of this one
   std::vector<std::size_t> first_rate_{0};  // of each system, and one past the last
+  IslandSolver islands_;
+  IslandSolver::Result convergence_;
+  bool has_corrections_ = false;  // of positions, in this step
+  std::vector<Manifold> overlapping_;
+  std::vector<double> end_gap_m_, lift_;  // per contact point, while positions are corrected
   Velocities velocity_, drift_, position_offset_;
+  Velocities before_contacts_;  // velocities without the impulses of the sweeps
   std::vector<double> scratch_;
   std::vector<int> last_change_;  // per mover plus one: counter value of its last change
   int sweeps_ = 0;

@@ -11,6 +11,11 @@ namespace {
 // remain.
 constexpr int kMaxSeparationSweeps = 200;
 constexpr double kSettled_m = 1e-7;
+// Change of speed at which overlapping surfaces have stopped, m/s.
+constexpr double kStopped_m_s = 1e-9;
+// The same for corrections within a step: a thousandth of the overlap that may remain.
+constexpr int kMaxCorrectionSweeps = 40;
+constexpr double kCorrected_m = 1e-8;
 
 }  // namespace
 
@@ -66,32 +71,113 @@ void World::restore_loads(const SavedStep& saved) {
   }
 }
 
-void World::hold(int unit, const SavedStep& saved) {
+void World::hold(int unit, const SavedStep& saved, double step_s) {
   std::size_t nth = 0;
   for (const int other : active_) {
     if (other == unit) break;
     if (index(other) < free_.size()) ++nth;
   }
-  const auto saved_motion = [&](int body) -> const BodyMotion& {
-    const auto at = std::lower_bound(active_bodies_.begin(), active_bodies_.end(), body);
-    return saved.motions[static_cast<std::size_t>(at - active_bodies_.begin())];
-  };
-  const auto rest = [&](int body) {
-    BodyMotion& m = motions_[index(body)] = saved_motion(body);
-    m.velocity_m_s = m.spin_rad_s = Eigen::Vector3d::Zero();
-  };
   if (index(unit) < free_.size()) {
     FreeBody& b = free_[index(unit)];
+    const Eigen::Matrix3d turn = b.orientation.toRotationMatrix();
+    const Eigen::Vector3d spin_momentum = turn * (b.inertia_kg_m2 * (turn.transpose() * b.spin_rad_s));
+    const Eigen::Vector3d velocity = b.velocity_m_s - step_s * b.gravity_m_s2;
     b = saved.free[nth];
-    b.velocity_m_s = b.spin_rad_s = b.force_N = b.moment_N_m = Eigen::Vector3d::Zero();
-    rest(body_of_[index(unit)]);
+    b.velocity_m_s = velocity;
+    b.step_s = step_s;
+    const Eigen::Matrix3d back = b.orientation.toRotationMatrix();
+    b.spin_rad_s = back * (b.inertia_kg_m2.inverse() * (back.transpose() * spin_momentum));
+    b.force_N = b.moment_N_m = Eigen::Vector3d::Zero();
+    motions_[index(body_of_[index(unit)])] = motion_of(b);
     return;
   }
   System& s = systems_[index(unit) - free_.size()];
   articulated::ArticulatedSystem::State state = saved.states[index(unit) - free_.size()];
-  std::fill(state.rates.begin(), state.rates.end(), 0.0);
+  state.rates = s.system.state().rates;
   s.system.set_state(state);
-  for (const int body : s.bodies) rest(body);
+  refresh(s);
+}
+
+void World::stop_approach(std::span<const Manifold> contacts, double min_overlap_m) {
+  overlapping_.clear();
+  for (const Manifold& m : contacts) {
+    Manifold& kept = overlapping_.emplace_back(m);
+    kept.count = 0;
+    for (const ManifoldPoint& p : m.used())
+      if (p.depth_m > min_overlap_m) kept.points[index(kept.count++)] = p;
+    if (kept.count == 0) overlapping_.pop_back();
+  }
+  for (const int unit : active_) {
+    const std::size_t i = index(unit);
+    if (i < free_.size()) {
+      velocity_.twists[i + 1] = {free_[i].velocity_m_s, free_[i].spin_rad_s};
+      drift_.twists[i + 1] = {};
+    } else {
+      const std::size_t s = i - free_.size();
+      const auto& rates = systems_[s].system.state().rates;
+      std::copy(rates.begin(), rates.end(), velocity_.rates.begin() + static_cast<std::ptrdiff_t>(first_rate_[s]));
+      std::fill_n(drift_.rates.begin() + static_cast<std::ptrdiff_t>(first_rate_[s]), rates.size(), 0.0);
+    }
+  }
+  update_inertia(overlapping_);
+  build_rows(overlapping_, 1);
+  for (int sweep = 0; sweep < kMaxSeparationSweeps; ++sweep) {
+    double change = 0;
+    for (ContactPoint& p : rows_.points) {
+      const double push = std::max(-p.impulse.x(), -rows_.velocity(p, velocity_).x() / p.mobility(0, 0));
+      if (push == 0) continue;
+      p.impulse.x() += push;
+      rows_.apply(p, {push, 0, 0}, velocity_);
+      change = std::max(change, std::abs(push) * p.mobility(0, 0));
+    }
+    if (change < kStopped_m_s) break;
+  }
+  for (const int unit : active_) {
+    const std::size_t i = index(unit);
+    if (i < free_.size()) {
+      const Twist& v = velocity_.twists[i + 1];
+      if (v.linear_m_s == free_[i].velocity_m_s && v.angular_rad_s == free_[i].spin_rad_s) continue;
+      free_[i].velocity_m_s = v.linear_m_s;
+      free_[i].spin_rad_s = v.angular_rad_s;
+      motions_[index(body_of_[i])] = motion_of(free_[i]);
+    } else {
+      const std::size_t s = i - free_.size(), first = first_rate_[s];
+      scratch_.assign(velocity_.rates.begin() + static_cast<std::ptrdiff_t>(first), velocity_.rates.begin() + static_cast<std::ptrdiff_t>(first_rate_[s + 1]));
+      bool changed = false;
+      for (std::size_t j = 0; j < scratch_.size(); ++j) {
+        scratch_[j] -= systems_[s].system.state().rates[j];
+        changed |= scratch_[j] != 0;
+      }
+      if (!changed) continue;
+      systems_[s].system.add_rates(scratch_);
+      refresh(systems_[s]);
+    }
+  }
+}
+
+// Adds the smallest displacements, weighted by inertia, with which gaps stay open at the end of the step and overlaps
+// shrink by their correction. Velocities do not change.
+void World::correct_positions(double h) {
+  end_gap_m_.resize(rows_.points.size());
+  lift_.assign(rows_.points.size(), 0);
+  for (std::size_t i = 0; i < rows_.points.size(); ++i) {
+    const ContactPoint& p = rows_.points[i];
+    end_gap_m_[i] = p.gap_m + h * rows_.velocity(p, velocity_).x() - (p.correction_m > 0 ? p.gap_m + p.correction_m : std::min(0.0, p.gap_m));
+  }
+  for (int sweep = 0; sweep < kMaxCorrectionSweeps; ++sweep) {
+    double change = 0;
+    for (std::size_t i = 0; i < rows_.points.size(); ++i) {
+      const ContactPoint& p = rows_.points[i];
+      if (p.couplings > 0) continue;
+      const double lacks = -end_gap_m_[i] - rows_.velocity(p, position_offset_).x();
+      const double push = std::max(-lift_[i], lacks / p.mobility(0, 0));
+      if (push == 0) continue;
+      lift_[i] += push;
+      rows_.apply(p, {push, 0, 0}, position_offset_);
+      change = std::max(change, std::abs(push) * p.mobility(0, 0));
+    }
+    if (change < kCorrected_m) return;
+  }
 }
 
 // Updates the inertia of the bodies in contact, at the current poses.

@@ -45,7 +45,7 @@ void archive(StateArchive& a, articulated::ArticulatedSystem& system) {
 void WarmStart::archive(StateArchive& a, std::size_t shapes) {
   a.list(stored_, kMaxKept, [&](StoredPoint& k) {
     a.index(k.shape_a, shapes), a.index(k.shape_b, shapes);
-    a(k.position_m), a(k.force_N), a(k.shell_m);
+    a(k.position_m), a(k.normal), a(k.force_N), a(k.shell_m);
   });
 }
 

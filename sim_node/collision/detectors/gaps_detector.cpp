@@ -176,6 +176,8 @@ class GapsDetector : public Detector, public NearestFirstDetector {
         gaps::resolve_piercing(gaps::moved(of_a, at), gaps::moved(of_b, pose_b), p);
       else if (!gaps::is_contact({*a.tree, at, of_a}, {*b.tree, pose_b, of_b}, p))
         continue;
+      else if (p.gap_m < gaps::kMaxOriented_m && !gaps::orient(gaps::moved(of_a, at), gaps::moved(of_b, pose_b), found_.pierced, p))
+        continue;
       if (box) p.triangle_a = -1;
       out.push_back(p);
     }

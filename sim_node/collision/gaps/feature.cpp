@@ -74,7 +74,11 @@ Feature of_triangle(const std::array<Vector3d, 3>& t, const Vector3d& d) {
   std::size_t opposite_corner = 0;
   for (std::size_t i = 1; i < 3; ++i)
     if (t[i].dot(d) < t[opposite_corner].dot(d)) opposite_corner = i;
-  return line(t[(opposite_corner + 1) % 3], t[(opposite_corner + 2) % 3]);
+  const Vector3d &from = t[(opposite_corner + 1) % 3], &to = t[(opposite_corner + 2) % 3];
+  // An edge seen along its axis has no length: its end is a point.
+  const double along = (to - from).dot(d);
+  if (std::abs(along) > kUpright * (to - from).norm()) return point(along > 0 ? to : from);
+  return line(from, to);
 }
 
 Feature local(const Convex& c, const Vector3d& d) {

@@ -83,6 +83,7 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor
                                                        of_b[static_cast<std::size_t>(p.triangle_b)]);
   };
   candidates_.clear();
+  const bool pierced = std::any_of(pairs.begin(), pairs.end(), [](const PointPair& p) { return p.pierced; });
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     PointPair& p = pairs[k];
     if (p.gap_m == kNoContact_m) continue;
@@ -90,7 +91,10 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor
     p.on_b_m = b.pose * p.on_b_m;
     p.normal = b.pose.linear() * p.normal;
     const bool separated = p.pierced;
-    if (separated) resolve_piercing(moved(triangles(p).first, a.pose), moved(triangles(p).second, b.pose), p);
+    if (separated)
+      resolve_piercing(moved(triangles(p).first, a.pose), moved(triangles(p).second, b.pose), p);
+    else if (p.gap_m < kMaxOriented_m && !orient(moved(triangles(p).first, a.pose), moved(triangles(p).second, b.pose), pierced, p))
+      continue;
     candidates_.push_back({p.gap_m, static_cast<std::uint32_t>(k), separated});
   }
   std::sort(candidates_.begin(), candidates_.end(),

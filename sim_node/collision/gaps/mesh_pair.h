@@ -44,8 +44,16 @@ struct MeshSide {
 bool is_contact(const MeshSide& a, const MeshSide& b, const PointPair& p);
 
 Triangle moved(const Triangle& t, const Eigen::Isometry3d& pose);  // leaves the edge directions unchanged
-// Sets normal and gap of a pair of intersecting triangles, world frame, to the shorter of the two translations along
-// their face normals.
+// Sets normal and gap of a pair of intersecting triangles, world frame, to the shortest translation that separates them:
+// along a face normal, or across two edges.
 void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair);
+
+// Gap above which orient() changes nothing, m.
+inline constexpr double kMaxOriented_m = 2e-3;
+// Corrects a pair of two triangles, world frame, whose normals point out of their bodies. A vertex slightly behind a face
+// that faces it is an overlap, whose normal points the other way (pierced: an edge of the bodies passes through a face,
+// so that deeper ones are overlaps too). Where surfaces touch, returns false for a pair whose normal does not separate
+// the two triangles: a corner that lies in the plane of a neighbouring face, or two edges of which only other faces meet.
+bool orient(const Triangle& a, const Triangle& b, bool pierced, PointPair& pair);
 
 }  // namespace tactus::sim::gaps

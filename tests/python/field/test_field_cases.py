@@ -18,6 +18,10 @@ CASES = ROOT / "tests" / "data" / "field"
 GRAVITY_M_S2, SPRING_N_M = 10, 1000
 # Elements without effect here: the line of the warning, and a word of it.
 IGNORED = {"ball.sdf": None, "local.sdf": None, "moon.sdf": (1, "spherical_coordinates"), "remote.sdf": (2, "fuel.gazebosim.org"), "sensor.sdf": (2, "sensor")}
+# Touching bodies: their overlap at the start, m, and the number of bodies that part: one on a floor, or two.
+TOUCHING = {"on_box.sdf": (0, 1), "depth_1e-4.sdf": (1e-4, 1), "two.sdf": (0, 2), "dyn_box_under.sdf": (1e-4, 2)}
+# With two groups, surfaces meet at the contact tolerance (sim_node/dual/README.md): bodies that begin nearer part by it, slowly.
+REST_M, CONTACT_TOLERANCE_M = 1e-5, 5e-4
 HOUR_US = 3600 * 1_000_000
 
 
@@ -51,6 +55,27 @@ class FieldCases(unittest.TestCase):
         for fields in snapshots.values():
             bodies.setdefault(int(fields["body"]), []).append(fields)
         return bodies
+
+    def test_bodies_whose_faces_touch_at_the_start_rest(self):
+        for name, (overlap_m, parting) in TOUCHING.items():
+            for groups, apart_m in (("single", 0), ("dual", CONTACT_TOLERANCE_M)):
+                with self.subTest(f"{name}, {groups}"):
+                    self.run_world(f"mesh_touching/{name}", 1, "--set", f"sim_node.groups={groups}")
+                    bodies = [states for states in self.states().values() if states[0]["position_m.z"] > 0]  # without the floor
+                    self.assertEqual(parting, len(bodies))
+                    bodies.sort(key=lambda states: states[0]["position_m.z"])
+                    for nth, states in enumerate(bodies):
+                        up = 1 if nth == parting - 1 else -1
+                        # Bodies that touch stay, those that overlap may part by their overlap.
+                        begin = 0.05 + 0.1 * nth - (overlap_m if up > 0 else 0)
+                        furthest = begin + up * (apart_m + overlap_m) / parting
+                        low, high = sorted((begin, furthest))
+                        for fields in states:
+                            for axis in "xy":
+                                self.assertAlmostEqual(0, fields[f"position_m.{axis}"], delta=REST_M)
+                            self.assertTrue(low - REST_M <= fields["position_m.z"] <= high + REST_M, fields)
+                        if groups == "dual":
+                            self.assertAlmostEqual(furthest, states[-1]["position_m.z"], delta=REST_M)
 
     def test_elements_without_effect_load_with_a_warning_that_names_their_line(self):
         for name, warning in IGNORED.items():

@@ -69,7 +69,9 @@ TEST_CASE("Meshes in contact end in the same state with every instruction set") 
     return state_hash(kScenes / "peg_in_hole.sdf", {"detector=layers", "isa=" + isa});
   };
   const std::uint64_t baseline = with("baseline");
-  CHECK(baseline != state_hash(kScenes / "peg_in_hole.sdf", {"detector=gaps"}));  // the detector is used
+  // The detector is used: its other mode ends elsewhere. The detector "gaps" may end in the same state: it leaves out
+  // pairs that are not contacts, which do not press.
+  CHECK(baseline != state_hash(kScenes / "peg_in_hole.sdf", {"detector=layers", "contact_mode=itouch2005"}));
   if (best_isa() >= Isa::kAvx2) CHECK(with("avx2") == baseline);
   if (best_isa() >= Isa::kAvx512) CHECK(with("avx512") == baseline);
 }

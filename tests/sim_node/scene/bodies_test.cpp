@@ -107,3 +107,15 @@ TEST_CASE("An SDF 1.4 file with old spellings loads") {
   CHECK(same(w.gravity_m_s2, {0, 0, -3.7}));
   CHECK(same(w.bodies[0].pose.linear() * Vector3d::UnitZ(), -Vector3d::UnitZ()));
 }
+
+TEST_CASE("A link starts with the velocity and spin that the scene gives it") {
+  SceneFile file(world("<model name=\"m\"><link name=\"l\"><tactus:velocity>0.5 -1 2</tactus:velocity>"
+                       "<tactus:spin>0 0 3.5</tactus:spin>" + kLinkBall + "</link></model>"));
+  const WorldDef w = file.load();
+  REQUIRE(w.bodies.size() == 1);
+  CHECK(same(w.bodies[0].velocity_m_s, {0.5, -1, 2}));
+  CHECK(same(w.bodies[0].spin_rad_s, {0, 0, 3.5}));
+  CHECK(file.warnings.empty());
+  SceneFile wrong(world("<model name=\"m\"><link name=\"l\"><tactus:velocity>0.5 -1</tactus:velocity></link></model>"));
+  CHECK_THROWS_WITH(wrong.load(), Catch::Contains("must be 3 numbers"));
+}

@@ -176,6 +176,7 @@ TEST_CASE("A body too fast for the penalty shell stops at the surface") {
                      .to_world({corner & 1 ? 0.05 : -0.05, corner & 2 ? 0.05 : -0.05, corner & 4 ? 0.02 : -0.02})
                      .z());
   }
+  INFO("h " << h << " speed " << speed << " explicit " << is_explicit);
   CHECK(min > -1e-5);
 }
 
