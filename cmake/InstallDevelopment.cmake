@@ -23,6 +23,13 @@ install(DIRECTORY ${CMAKE_BINARY_DIR}/lcmtypes/generated/tactus DESTINATION ${TA
 install(DIRECTORY lcmtypes/types DESTINATION ${TACTUS_DATA_DIR}/lcmtypes COMPONENT dev)
 install(DIRECTORY examples DESTINATION share/doc/tactus-dev COMPONENT dev PATTERN "__pycache__" EXCLUDE)
 
+# The debug information of libraries names folders of the build. The strip of `cmake --install --strip` leaves libraries for linking as they are.
+if(CMAKE_STRIP)
+  install(CODE "
+    file(GLOB libraries \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/libtactus_*.a\")
+    execute_process(COMMAND ${CMAKE_STRIP} --strip-debug --enable-deterministic-archives \${libraries} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT dev)
+endif()
+
 include(CMakePackageConfigHelpers)
 configure_package_config_file(cmake/TactusConfig.cmake.in ${CMAKE_BINARY_DIR}/TactusConfig.cmake INSTALL_DESTINATION ${TACTUS_CMAKE_DIR})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/TactusConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -2,7 +2,9 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tactus)
 set(CPACK_PACKAGE_VENDOR "The Tactus developers")
-set(CPACK_PACKAGE_CONTACT "The Tactus developers <tactus@localhost.localdomain>")
+# The address of the laboratory that builds the packages.
+set(TACTUS_MAINTAINER "The Tactus developers <tactus@packages.invalid>" CACHE STRING "Maintainer of the Debian packages: NAME <ADDRESS>")
+set(CPACK_PACKAGE_CONTACT ${TACTUS_MAINTAINER})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "multimodal haptics: one scene to feel, hear, see and sense the warmth of")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -56,7 +58,7 @@ and every renderer can replay any log.
 .
 This package holds the nodes, the tools and the command tactus."
   SHLIBDEPS PYTHON
-  DEPENDS python3 python3-lxml ffmpeg runit iproute2 libcap2-bin procps util-linux libegl-mesa0 libgl1-mesa-dri
+  DEPENDS python3 python3-lxml ffmpeg runit iproute2 libcap2-bin procps libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri
   RECOMMENDS python3-numpy python3-scipy python3-matplotlib python3-websockets openssh-client fonts-noto-core
 )
 tactus_package(studies tactus-studies "multimodal haptics: studies of degraded senses"
