@@ -17,6 +17,6 @@ function(tactus_lcm_types target)
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)
   # SYSTEM: no compiler warnings for generated code.
-  target_include_directories(${target} SYSTEM INTERFACE ${out})
+  target_include_directories(${target} SYSTEM INTERFACE $<BUILD_INTERFACE:${out}>)
   target_link_libraries(${target} INTERFACE Lcm::lcm)
 endfunction()

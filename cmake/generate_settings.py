@@ -6,7 +6,7 @@
   generate_settings.py markdown OUT.md NODE/settings.csv ...  the table for people
 
 Columns: name,unit,default,min,max,meaning,source[,safety[,live]]. A unit is SI ("s", "N/m", "1"), "count", "bool", "text", or a
-choice "a|b|c". A row without a source is an error: a constant without a source is a bug. safety: "max" or "min" marks an
+choice "a|b|c", in which "p:*" stands for any word after "p:". A row without a source is an error: a constant without a source is a bug. safety: "max" or "min" marks an
 upper or a lower limit that protects a person; a scene may only tighten it. live: "yes" marks what `tactus set` may change while the node
 runs.
 """

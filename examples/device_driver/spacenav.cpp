@@ -19,7 +19,7 @@
 #include <tactus/device_state_t.hpp>
 #include <thread>
 
-#include "examples/device_driver/push_motion.h"
+#include "push_motion.h"
 
 namespace {
 

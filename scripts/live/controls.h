@@ -1,4 +1,4 @@
-// Carries out the requests of pages in the cluster, as tactus simulation, degrade and set do, but without waiting: each
+// Carries out the requests of pages in the cluster, as tactus simulate, degrade and set do, but without waiting: each
 // request is repeated until it is answered or has been sent for long enough. Bounded: a new request replaces the previous one
 // of its kind.
 #pragma once

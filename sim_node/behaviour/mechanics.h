@@ -2,15 +2,18 @@
 // groups.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_t.hpp>
 #include <vector>
 
 #include "sim_node/behaviour/impulse/scene_settings.h"
 #include "sim_node/collision/detectors/mesh_trees.h"
+#include "sim_node/model/behaviour_model.h"
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/group_tool.h"
 #include "sim_node/model/ids.h"
@@ -66,6 +69,13 @@ class Mechanics {
   // Renames the ids of contacts and events to another incarnation, after `ids` has been renamed.
   virtual void rename(std::int64_t incarnation) = 0;
 };
+
+using MechanicsFactory = std::function<std::unique_ptr<Mechanics>(const WorldDef&, const Settings&, Ids&)>;
+
+// Makes a behaviour model of another program available as the setting solver = custom:NAME, with groups = single. model: its properties, for the
+// checks at start-up; its name is ignored. Call it before run() and from one thread. Throws std::invalid_argument when the name is empty or
+// already registered.
+void register_behaviour(const std::string& name, const BehaviourModel& model, MechanicsFactory make);
 
 // Creates the implementation that the settings select. trees: of this world. Throws std::runtime_error with one
 // sentence when the world cannot be simulated.

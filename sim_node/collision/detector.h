@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -50,9 +51,13 @@ class Detector {
   virtual bool supports(ShapeKind a, ShapeKind b) const = 0;
 };
 
+// Makes a detector of another program available as the setting detector = custom:NAME. Call it before run() and from one thread. Throws
+// std::invalid_argument when the name is empty or already registered.
+void register_detector(std::string name, std::function<std::unique_ptr<Detector>()> make);
+
 // ode: dCollide of ODE. ccd, ccd_mpr: libccd for convex shapes, by GJK and EPA or by MPR. fcl: FCL, where it was
 // built in. layers: own detector for meshes, boxes and heightfields as triangles. gaps: own detector for every pair;
-// it uses the layers for meshes. auto: gaps.
+// it uses the layers for meshes. auto: gaps. custom:NAME: a registered one.
 // Throws std::runtime_error with one sentence when the name is unknown or the detector was not built in. trees:
 // shared trees of the world whose shapes will be added; null: the detector makes its own.
 std::unique_ptr<Detector> make_detector(std::string_view name, const MeshContactOptions& layers = {},

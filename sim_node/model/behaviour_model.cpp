@@ -1,7 +1,9 @@
 #include "sim_node/model/behaviour_model.h"
 
 #include <array>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 namespace tactus::sim {
 namespace {
@@ -28,11 +30,26 @@ constexpr std::array<BehaviourModel, 5> kModels{{
      .finite_forces = true},
 }};
 
+// Written before run() only, by the main function of a program that links this library.
+std::map<std::string, BehaviourModel, std::less<>>& registered_models() {
+  static std::map<std::string, BehaviourModel, std::less<>> all;
+  return all;
+}
+
 }  // namespace
+
+void register_behaviour_model(std::string name, BehaviourModel model) {
+  const auto [i, added] = registered_models().try_emplace(std::move(name), model);
+  if (!added) throw std::invalid_argument("sim_node: the behaviour model \"" + i->first + "\" is registered twice; give each its own name");
+  i->second.name = i->first;
+}
 
 const BehaviourModel& behaviour_model(std::string_view name) {
   for (const BehaviourModel& m : kModels)
     if (m.name == name) return m;
+  if (const auto i = registered_models().find(name); i != registered_models().end()) return i->second;
+  if (name.starts_with("custom:"))
+    throw std::runtime_error("sim_node: the solver \"" + std::string(name) + "\" is not part of this program; start the program that registers it");
   throw std::runtime_error("sim_node: the solver \"" + std::string(name) +
                            "\" is unknown; choose quick, step, impulse, penalty or penalty_explicit");
 }

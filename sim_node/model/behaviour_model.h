@@ -1,6 +1,7 @@
 // Contact laws that a scene may select (setting `solver`), and the requirements of each.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "sim_node/settings.gen.h"
@@ -22,6 +23,10 @@ struct BehaviourModel {
   bool bounces = true;  // by restitution; otherwise restitution applies only to bodies too fast for the spring
   bool finite_forces = false;  // forces are finite and continuous; otherwise an impact takes one step
 };
+
+// Adds the properties of a behaviour model of another program; its name begins with "custom:". Call it before run() and from one thread.
+// register_behaviour (behaviour/mechanics.h) calls it. Throws std::invalid_argument when the name is taken.
+void register_behaviour_model(std::string name, BehaviourModel model);
 
 // Throws std::runtime_error with one sentence when the name is unknown.
 const BehaviourModel& behaviour_model(std::string_view name);

@@ -1,5 +1,7 @@
 #include "sim_node/world/engine.h"
 
+#include <utility>
+
 #include "sim_node/model/behaviour_model.h"
 
 namespace tactus::sim {
@@ -12,6 +14,9 @@ std::string contradiction(const std::string& engine, const char* setting, const 
 }  // namespace
 
 std::string apply_engine(Settings& s) {
+  if (s.engine == "parts") return "";
+  for (const auto& [setting, value] : {std::pair("solver", s.solver), std::pair("detector", s.detector)})
+    if (value.starts_with("custom:")) return contradiction(s.engine, setting, value);
   const bool impulses = behaviour_model(s.solver).impulses;
   if (s.engine == "tactus") {
     if (!impulses) return contradiction(s.engine, "solver", s.solver);

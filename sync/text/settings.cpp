@@ -73,7 +73,8 @@ void check_setting(const SettingRow& row, std::string_view value) {
     std::string_view rest = unit;
     while (!rest.empty()) {
       const auto bar = rest.find('|');
-      if (rest.substr(0, bar) == value) return;
+      const std::string_view word = rest.substr(0, bar);
+      if (word == value || (word.ends_with('*') && value.size() >= word.size() && value.starts_with(word.substr(0, word.size() - 1)))) return;
       rest = bar == std::string_view::npos ? "" : rest.substr(bar + 1);
     }
     throw std::invalid_argument(prefix + "must be one of " + std::string(unit));

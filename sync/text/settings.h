@@ -20,7 +20,7 @@ double parse_quantity(std::string_view text, std::string_view unit);
 // One row of a settings.csv.
 struct SettingRow {
   const char* name;     // as in XML and --set
-  const char* unit;     // "s", "Hz", "N/m", "1", "count", "bool", or "a|b|c" for a choice
+  const char* unit;     // "s", "Hz", "N/m", "1", "count", "bool", or "a|b|c" for a choice; "p:*" in it stands for any word after p:
   const char* initial;  // the default, in that unit
   double min;
   double max;

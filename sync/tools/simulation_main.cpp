@@ -101,7 +101,7 @@ int main(int argc, char** argv) try {
   auto& replies = bus.queue<sim_reply_t>(channels::kSimReply, 256);
   const auto reply = sync::request(bus, channels::kSimCommand, command, replies, kTimeout);
   if (!reply)
-    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: tactus simulation");
+    throw std::runtime_error("no sim_node answers on this bus; run it inside the cluster: tactus simulate");
   if (!reply->done) throw std::runtime_error(sync::printable(reply->text));
   std::cout << sync::printable(reply->text) << std::endl;
   return 0;

@@ -40,6 +40,7 @@ TABLES = {
 OTHER = {
     "*/modality.csv": "limits of operators",
     "docs/constants.csv": "this register",
+    "examples/*/settings.csv": "settings of an example",
     "scripts/python/tactus/cluster/traffic.csv": "measured rates of messages",
     "visual_node/rooms/*.csv": "rooms",
 }

@@ -1,5 +1,5 @@
 // convert_geometry: converts a geometry file to glTF 2.0 with material, relief and appearance of the object.
-// tactus convert-geometry calls it.
+// tactus convert calls it.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

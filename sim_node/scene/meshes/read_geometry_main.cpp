@@ -11,7 +11,7 @@ namespace {
 constexpr char kHelp[] =
     "Usage: read_geometry FILE [FOLDER...]\n\n"
     "Parses a file of geometry for sim_node, confined in a process of its own: it can read only FILE and the FOLDERs.\n"
-    "FILE is an absolute path. The output is binary. To convert geometry, use tactus convert-geometry.\n"
+    "FILE is an absolute path. The output is binary. To convert geometry, use tactus convert.\n"
     "  --help   print this text\n";
 
 }  // namespace
@@ -19,7 +19,7 @@ constexpr char kHelp[] =
 int main(int argc, char** argv) {
   if (const auto status = tactus::sync::reader_options(argc, argv, kHelp)) return *status;
   if (argc < 2 || argv[1][0] != '/') {
-    std::fprintf(stderr, "read_geometry: no file; sim_node starts this program, and tactus convert-geometry is for users\n");
+    std::fprintf(stderr, "read_geometry: no file; sim_node starts this program, and tactus convert is for users\n");
     return 1;
   }
   const std::filesystem::path file(argv[1]);

@@ -94,11 +94,11 @@ class Refusals(unittest.TestCase):
     def test_commands_without_a_running_cluster_are_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             environment = {**os.environ, "TMPDIR": folder, "TACTUS_BIN": "/nowhere"}
-            for words in (("attach", "true"), ("spy",), ("degrade", "off"), ("simulation", "pause")):
+            for words in (("attach", "true"), ("spy",), ("degrade", "off"), ("simulate", "pause")):
                 done = tactus(*words, env=environment)
-                self.assertEqual((1, "attach: no cluster is running; start one with scripts/run, or name its output folder\n"), (done.returncode, done.stderr))
+                self.assertEqual((1, "attach: no cluster is running; start one with tactus run, or name its output folder\n"), (done.returncode, done.stderr))
             done = tactus("attach", folder, "true", env=environment)
-            self.assertEqual((1, f"attach: no cluster is running that writes to {folder}; start one with scripts/run --out {folder}\n"), (done.returncode, done.stderr))
+            self.assertEqual((1, f"attach: no cluster is running that writes to {folder}; start one with tactus run --out {folder}\n"), (done.returncode, done.stderr))
 
 
 if __name__ == "__main__":

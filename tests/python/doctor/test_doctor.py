@@ -155,7 +155,7 @@ class Devices(unittest.TestCase):
 
     def test_the_remedy_for_a_missing_renderer_fits_the_machine(self):
         with mock.patch.object(devices.glob, "glob", return_value=[]), mock.patch.object(devices.pathlib.Path, "exists", return_value=False):
-            self.assertIn("scripts/setup run installs", devices.renderer_advice())
+            self.assertIn("tactus setup run installs", devices.renderer_advice())
         with mock.patch.object(devices.pathlib.Path, "exists", return_value=True), mock.patch.object(devices.pathlib.Path, "is_dir", return_value=True), \
                 mock.patch.dict(os.environ, {"LIBGL_DRIVERS_PATH": "/none"}, clear=True):
             self.assertEqual("a software renderer is installed; unset LIBGL_DRIVERS_PATH", devices.renderer_advice())

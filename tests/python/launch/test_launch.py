@@ -14,7 +14,7 @@ from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
 from tactus import terminal
-from tactus.launch import arguments, cluster, main, results, services
+from tactus.launch import arguments, cluster, main, results, services, walls
 from tactus.paths import SCRIPTS
 from tactus.refusal import Interrupted, Refusal
 
@@ -198,7 +198,7 @@ class Walls(Folders):
 
     def test_a_room_file_is_passed_as_an_absolute_path(self):
         mine = self.folder / "mine.csv"
-        head = (arguments.REPOSITORY / "visual_node" / "rooms" / "desk.csv").read_text(encoding="utf-8").split("\n", maxsplit=1)[0]
+        head = (walls.ROOMS / "desk.csv").read_text(encoding="utf-8").split("\n", maxsplit=1)[0]
         mine.write_text(head + "\neye,0,0,1,,,,,,\na/b,1,1,0,1,-1,0,1,1,2\na b,1,-1,0,-1,-1,0,1,-1,2\nc,-1,1,0,1,1,0,-1,1,2\n", encoding="utf-8")
         plan, commands = self.of("--room", os.path.relpath(mine))
         self.assertEqual({"visual_node": "a/b", "visual_node_a_b": "a b", "visual_node_c": "c"}, plan.walls)

@@ -133,7 +133,7 @@ class Words(unittest.TestCase):
 class Descriptions(unittest.TestCase):
     def test_an_unreadable_log_is_refused_with_the_message_of_the_program(self):
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(replay.cluster, "BIN", pathlib.Path(folder)):
-            with self.assertRaisesRegex(Refusal, "not built"):
+            with self.assertRaisesRegex(Refusal, "is missing; run scripts/build"):
                 replay.describe_log("run.lcmlog")
             program = pathlib.Path(folder) / "replay"
             program.write_text("#!/bin/sh\necho replay: run.lcmlog is not a log >&2\nexit 1\n")

@@ -45,5 +45,6 @@ TEST_CASE("A setting that contradicts the engine is named") {
   CHECK(error_of("ode", "penalty", "auto") == "sim_node: engine = ode does not include solver = penalty; leave out one of the two");
   CHECK(error_of("ode", "quick", "gaps") == "sim_node: engine = ode does not include detector = gaps; leave out one of the two");
   CHECK(error_of("tactus", "step", "auto") == "sim_node: engine = tactus does not include solver = step; leave out one of the two");
+  CHECK(error_of("ode", "custom:mine", "auto") == "sim_node: engine = ode does not include solver = custom:mine; leave out one of the two");
   CHECK(error_of("tactus", "impulse", "ode") == "sim_node: engine = tactus does not include detector = ode; leave out one of the two");
 }

@@ -34,6 +34,12 @@ struct Entry {
 
 }  // namespace
 
+TEST_CASE("A choice with an open end accepts any word after its prefix, and no other") {
+  const SettingRow row{"detector", "auto|gaps|custom:*", "auto", 0, 0, "Detector", "design"};
+  for (const char* word : {"auto", "gaps", "custom:balls", "custom:b"}) CHECK_NOTHROW(check_setting(row, word));
+  for (const char* word : {"", "cus", "custom", "custom:", "custom*", "balls", "gaps:x", "Custom:balls"}) CHECK_THROWS_AS(check_setting(row, word), std::invalid_argument);
+}
+
 TEST_CASE("A quantity may have any common unit of its kind") {
   CHECK(parse_quantity("20ms", "s") == Approx(0.02));
   CHECK(parse_quantity(" 20 ms ", "s") == Approx(0.02));

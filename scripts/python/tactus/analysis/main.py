@@ -7,6 +7,7 @@ import pathlib
 import sys
 
 from tactus import own_files, terminal
+from tactus.paths import packages_remedy
 from tactus.refusal import Refusal
 
 USAGE = """Analyses trials and games: limits of detection, of a felt change and of the task for each degradation.
@@ -64,7 +65,7 @@ def analyse(options):
         from tactus.analysis import study_files
         from tactus.analysis import trials
     except ImportError as error:
-        raise Refusal(f"{error.name} is missing; run scripts/setup study") from None
+        raise Refusal(f"{error.name} is missing; {packages_remedy('study')}") from None
     files = trials.files_of(options.place)
     rows = trials.read(files)
     share = lambda percent: None if percent is None else percent / 100

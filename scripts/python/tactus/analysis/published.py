@@ -3,10 +3,8 @@ import dataclasses
 import re
 
 from tactus.analysis.operators import Factor
-from tactus.paths import REPOSITORY
+from tactus.paths import THRESHOLDS
 from tactus.tables import read_rows
-
-THRESHOLDS = REPOSITORY / "sync" / "presentation" / "thresholds.csv"
 
 
 @dataclasses.dataclass(frozen=True)

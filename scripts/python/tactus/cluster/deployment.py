@@ -8,16 +8,16 @@ import tarfile
 import tempfile
 
 from tactus.cluster import scene_files, sites
-from tactus.paths import BIN, REPOSITORY, SCRIPTS
+from tactus.paths import BIN, ROOMS, SCENES, SCRIPTS, remedy
 from tactus.refusal import Refusal
 
 PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "watch", "spy", "degrade",
             "playout", "set", "message_types", "probe_pairs", "relay",
             "read_geometry", "read_pictures", "read_sounds")
-FOLDERS = {"share/scenes": REPOSITORY / "sim_node" / "scenes", "share/rooms": REPOSITORY / "visual_node" / "rooms", "share/relays": sites.SHIPPED}
+FOLDERS = {"share/scenes": SCENES, "share/rooms": ROOMS, "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
 # Files that `tactus doctor` imports besides its own package.
-DOCTOR = ("__init__.py", "refusal.py", "environment.py", "terminal.py", "commands/__init__.py", "commands/dispatch.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/sound_server.py", "launch/network.py")
+DOCTOR = ("__init__.py", "option_parser.py", "paths.py", "refusal.py", "signals.py", "environment.py", "terminal.py", "commands/__init__.py", "commands/dispatch.py", "commands/common_options.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/sound_server.py", "launch/network.py")
 LARGEST_SCENE_BYTES = 500_000_000
 
 
@@ -34,7 +34,7 @@ def parts():
     found["share/inside"] = package / "launch" / "inside"
     for name, path in found.items():
         if not path.is_file():
-            raise Refusal(f"{path.name}: {path} is not built; run scripts/build --programs")
+            raise Refusal(f"{path.name}: {path} is missing; {remedy('--programs')}")
     return found
 
 

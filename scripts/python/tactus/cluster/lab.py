@@ -13,7 +13,7 @@ import tempfile
 import time
 
 from tactus.cluster import host_connection
-from tactus.paths import REPOSITORY
+from tactus.paths import REPOSITORY, packages_remedy
 
 VARIABLE = "TACTUS_LAB"  # environment variable with the folder of the lab
 SUBNET = "10.77.0"
@@ -252,7 +252,7 @@ def enter(words):
         raise Error("a lab needs root, because it makes network, mount and time namespaces; run it as root")
     for program in ("unshare", "nsenter", "ip", "tc", "nft", "/usr/sbin/sshd", "ssh", "ssh-keygen"):
         if not shutil.which(program, path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin"):
-            raise Error(f"{program} is not installed; run scripts/setup lab")
+            raise Error(f"{program} is not installed; {packages_remedy('lab')}")
     environment = dict(os.environ, TACTUS_LAB_INSIDE="1", PATH=os.environ.get("PATH", "") + ":/usr/sbin:/sbin")
     space = ["unshare", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc"]
     probe = subprocess.run([*space, "unshare", "--time", "--monotonic", "1", "--fork", "true"], capture_output=True, check=False)

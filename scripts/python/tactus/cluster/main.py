@@ -35,7 +35,7 @@ def parsed(words):
     command("up", (["name"], {"nargs": "?"}))
     command("check", (["name"], {"nargs": "?"}))
     command("down", (["--out"], {}))
-    command("status", (["--once"], flag), (["--json"], flag))
+    command("status", (["--once"], flag), (["--json"], {"nargs": "?", "const": "/dev/stdout"}))
     command("logs", (["nodes"], {"nargs": "*"}), (["--lines"], {"type": int, "default": 10}), (["--follow"], flag))
     command("restart", (["node"], {}))
     command("move", (["node"], {}), (["host"], {}), (["--restart"], flag), (["--lost"], flag), (["--shaders"], flag))
@@ -123,7 +123,8 @@ def status(a, cluster):
         states, bus = table.query(operator)
         found = table.rows(cluster, states, bus)
         if a.json:
-            report(json.dumps({"cluster": cluster.name, "whole": table.all_running(cluster, states, bus), "nodes": found}))
+            with open(a.json, "a", encoding="utf-8") as file:
+                print(json.dumps({"cluster": cluster.name, "whole": table.all_running(cluster, states, bus), "nodes": found}), file=file)
         else:
             if live:
                 os.write(1, b"\x1b[H\x1b[2J")  # cursor home, clear the screen

@@ -28,6 +28,7 @@ import sys
 
 from tactus import terminal
 from tactus.cluster import macsec, path_files
+from tactus.paths import packages_remedy
 from tactus.refusal import Refusal, sentence_of
 
 NAME = re.compile(r"[A-Za-z0-9]([A-Za-z0-9-]{0,30}[A-Za-z0-9])?")
@@ -93,7 +94,7 @@ def server_address(text):
 
 def make(a):
     if not shutil.which("openssl"):
-        raise Refusal("openssl is not installed; run scripts/setup private-path")
+        raise Refusal(f"openssl is not installed; {packages_remedy('private-path')}")
     out = pathlib.Path(a.out)
     if out.exists() or out.is_symlink():
         raise Refusal(f"--out {out}: already exists, and its keys may be in use; name a new folder")

@@ -33,7 +33,7 @@ def cluster_of(out):
     found = cluster_folder.address(folder)
     if found is None:
         refuse_foreign(folder)
-        raise Refusal(f"no cluster is running that writes to {out}; start one with scripts/run --out {out}")
+        raise Refusal(f"no cluster is running that writes to {out}; start one with tactus run --out {out}")
     return folder, found
 
 
@@ -45,7 +45,7 @@ def newest():
             return folder, found
     for folder in sorted(pathlib.Path(tempfile.gettempdir()).glob(cluster_folder.PREFIX.format(user="[0-9]*") + "*")):
         refuse_foreign(folder)
-    raise Refusal("no cluster is running; start one with scripts/run, or name its output folder")
+    raise Refusal("no cluster is running; start one with tactus run, or name its output folder")
 
 
 def refuse_foreign(folder):

@@ -12,6 +12,8 @@ import socket
 import struct
 import time
 
+from tactus.option_parser import OptionParser
+
 GROUP = "239.255.76.67"
 MAGIC = 0x4C433032  # a short LCM message (LCM 1.3.1, lcm_udpm.h)
 BULK_BYTES = 60_000
@@ -19,11 +21,12 @@ STEP_S = 0.001
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="tactus disturb", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OptionParser(prog="tactus disturb", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("malformed", "bulk"))
     parser.add_argument("--channel", default="CONTACT_EVENTS", help="channel of the malformed messages (default: %(default)s)")
     parser.add_argument("--rate", type=float, help="messages per second, or bytes per second (default: 10,000 and 60,000,000)")
     parser.add_argument("--seconds", type=float, default=10)
+    parser.add_argument("--seed", type=int, default=1, help="seed of the malformed messages (default: 1)")
     parser.add_argument("--port", type=int, default=int(os.environ.get("TACTUS_PORT", "7667")))
     return parser.parse_args(words)
 
@@ -32,11 +35,11 @@ def packet(number, channel, payload):
     return struct.pack(">II", MAGIC, number & 0xFFFFFFFF) + channel.encode() + b"\0" + payload
 
 
-def payloads(what):
+def payloads(what, seed):
     """Prepared payloads, sent cyclically, because generating one takes longer than sending it."""
     if what == "bulk":
         return [bytes(BULK_BYTES)]
-    chance = random.Random(1)
+    chance = random.Random(seed)
     return [chance.randbytes(chance.randint(0, 400)) for _ in range(64)]
 
 
@@ -48,7 +51,7 @@ def main(words):
     channel = "BULK_NOISE" if bulk else options.channel
     out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
-    kinds = payloads(options.what)
+    kinds = payloads(options.what, options.seed)
     begin, sent = time.monotonic(), 0
     while (now := time.monotonic() - begin) < options.seconds:
         while sent < now * per_second:

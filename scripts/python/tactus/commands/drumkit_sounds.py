@@ -6,7 +6,7 @@ Usage: tactus drumkit-sounds DIR [--from FOLDER]
   --from  folder of the kits; default: that of the package
 
 Materials: sticks oak, heads rubber, cymbals and cowbell copper, rims steel. This is close enough to recognise the objects. Play them with
-  scripts/run SCENE --set audio_node.method=samples --set audio_node.sounds=DIR --set audio_node.recorded_level=0.3
+  tactus run SCENE --set audio_node.method=samples --set audio_node.sounds=DIR --set audio_node.recorded_level=0.3
 because drums are recorded up to full scale. To map other recordings, add one line to DRUMS for each file.
 """
 import argparse
@@ -15,6 +15,7 @@ import shutil
 import sys
 
 from tactus import own_files
+from tactus.option_parser import OptionParser
 
 KITS = "/usr/share/hydrogen/data/drumkits"
 # (recording, path in the folder), softest first: the kits number their layers in this order.
@@ -31,7 +32,7 @@ SIZES = {"oak-rubber": 0.02, "copper-oak": 0.02, "oak-steel": 0.02, "oak-oak": 0
 
 
 def main(words):
-    parser = argparse.ArgumentParser(prog="tactus drumkit-sounds", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OptionParser(prog="tactus drumkit-sounds", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder")
     parser.add_argument("--from", dest="kits", default=KITS)
     options = parser.parse_args(words)

@@ -6,7 +6,7 @@ from tactus.commands import prepare
 VERBS = {"open": "tactus.commands.live_open", "follow": "tactus.commands.live_follow"}
 USAGE = """Usage: tactus live VERB ...
 
-  open LOG [--http-port N]     shows a log in a web page with a seek bar; for a run: scripts/run --live
+  open LOG [--http-port N]     shows a log in a web page with a seek bar; for a run: tactus run --live
   follow URL [option]...       connects to a live page without a browser, and counts frames, values and pictures
 
 tactus live VERB --help describes a verb."""

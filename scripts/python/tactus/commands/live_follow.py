@@ -2,7 +2,7 @@
 
   tactus live follow URL [--watch NAME]... [--seconds S] [--json FILE]
 
-scripts/run --live prints the URL. The client watches NAMEs ("sim_node.work.collision", "TOOL_STATE:force_N.z") and receives pictures.
+tactus run --live prints the URL. The client watches NAMEs ("sim_node.work.collision", "TOOL_STATE:force_N.z") and receives pictures.
 At the end it prints the numbers of received frames, values and pictures, and of frames that the server dropped because this client was slow.
 """
 import argparse
@@ -15,6 +15,7 @@ import urllib.parse
 import websockets
 
 from tactus import terminal
+from tactus.option_parser import OptionParser
 
 # Values that the page shows first, and the computing time of each node.
 USUAL = ["TOOL_STATE:force_N.z", "TOOL_STATE:proxy.position_m.z", "THERMAL_STATE:skin_degC",
@@ -45,7 +46,7 @@ async def follow(url, names, seconds, counted):
 
 
 def main(words):
-    parser = argparse.ArgumentParser(prog="tactus live follow", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OptionParser(prog="tactus live follow", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("url", metavar="URL")
     parser.add_argument("--watch", metavar="NAME", action="append", help="a tagged variable or a field; default: the values that a page shows first")
     parser.add_argument("--seconds", type=float, default=10, help="default: 10")

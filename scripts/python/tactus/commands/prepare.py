@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 from tactus import environment, terminal
-from tactus.paths import BIN, SCRIPTS
+from tactus.paths import BIN, INSTALLED, SCRIPTS, remedy
 
 
 def print_usage(usage, requested=True):
@@ -28,26 +28,30 @@ def run_script(*words):
 
 
 def install(*groups):
-    """Installs the missing packages of these groups of scripts/packages.txt, unless TACTUS_BIN is set or this is a copy on a host of a cluster.
-    Exits on failure."""
-    if not os.environ.get("TACTUS_BIN") and (SCRIPTS / "setup").exists():
+    """Installs the missing packages of these groups of scripts/packages.txt, unless TACTUS_BIN is set, this is an installation, whose packages
+    are those of its system, or a copy on a host of a cluster. Exits on failure."""
+    if not os.environ.get("TACTUS_BIN") and not INSTALLED and (SCRIPTS / "setup").exists():
         run_script(SCRIPTS / "setup", "--packages", *groups)
 
 
 def install_and_build(*targets):
-    """Installs missing packages and builds, unless TACTUS_BIN is set. targets: of the build; default: all programs. Exits on failure."""
-    if os.environ.get("TACTUS_BIN"):
+    """Installs missing packages and builds, unless TACTUS_BIN is set or this is an installation. targets: of the build; default: all programs.
+    Exits on failure."""
+    if os.environ.get("TACTUS_BIN") or INSTALLED:
         return
     run_script(SCRIPTS / "setup", "--packages")
     run_script(SCRIPTS / "build", *(targets or ("--programs",)))
 
 
 def program(name):
-    """Path of a program of the build; installs the packages and builds it when it is missing, unless TACTUS_BIN is set. Exits on failure."""
+    """Path of a program of the build or of the installation. In a source tree, installs the packages and builds it when it is missing, unless
+    TACTUS_BIN is set. Exits on failure."""
     path = BIN / name
     if not os.access(path, os.X_OK):
         if os.environ.get("TACTUS_BIN"):
             sys.exit(f"{name}: {path} does not exist; correct TACTUS_BIN")
+        if INSTALLED:
+            sys.exit(f"{name}: {path} does not exist; {remedy()}")
         install()
         run_script(SCRIPTS / "build", name)
     return str(path)

@@ -3,7 +3,7 @@ from tactus.commands import prepare
 
 USAGE = """Usage: tactus replay LOG [option]...
 
-Plays a log to the nodes of the modalities, which render it again, live. Each node runs in its own process, as with scripts/run.
+Plays a log to the nodes of the modalities, which render it again, live. Each node runs in its own process, as with tactus run.
 
   LOG                    run.lcmlog of a run, or its folder: all parts of its recording; damaged logs are played up to
                          the damage
@@ -20,7 +20,8 @@ Plays a log to the nodes of the modalities, which render it again, live. Each no
   --rename FROM=TO       renames a channel; may be repeated
   --most N               maximum number of messages per second, at any speed; default: 16000
   --set, --seed, --device, --policy, --soa, --base, --budget, --aligner, --window, --listen, --realtime, --network, --port, --out
-                         as for scripts/run
+                         as for tactus run
+  --json FILE            also writes summary.json to FILE; -: prints only it
   --stay                 continues to run at the end of the log
   --help                 this text
 
@@ -32,9 +33,9 @@ Keys in a terminal during the replay: space pauses and resumes, . plays the time
 double and halve the speed, 1 sets the recorded speed, m sets max, 0 seeks to the start, l toggles the loop, q ends. Commands in
 OUT/control or stdin, one a line: pause, resume, toggle, step [S], seek [+|-]S, speed FACTOR|max, loop on|off, quit.
 
-The results are those of scripts/run for the live nodes: audio.wav, video.mp4, summary.json, ... and a log of the replay.
+The results are those of tactus run for the live nodes: audio.wav, video.mp4, summary.json, ... and a log of the replay.
 
-Exit status: as for scripts/run."""
+Exit status: as for tactus run."""
 
 
 def main(words):

@@ -20,7 +20,7 @@ def sound(has_card):
     if has_card:
         return Line("sound card", GOOD, ", ".join(names) or "by a sound server", figures={"cards": names})
     return Line("sound card", WEAK, "there is none: sound is only written to audio.wav",
-                "connect one, or start the sound server of the desktop; then scripts/run --listen", {"cards": names})
+                "connect one, or start the sound server of the desktop; then tactus run --listen", {"cards": names})
 
 
 def renderer():
@@ -52,7 +52,7 @@ def renderer_advice():
     folders = [*map(pathlib.Path, glob.glob("/usr/lib/*-linux-gnu*")), pathlib.Path("/usr/lib64"), pathlib.Path("/usr/lib")]
     installed = any((folder / "libEGL_mesa.so.0").exists() for folder in folders) and any((folder / "dri").is_dir() for folder in folders)
     if not installed:
-        return "scripts/setup run installs a software renderer (libegl-mesa0, libgl1-mesa-dri)"
+        return "tactus setup run installs a software renderer (libegl-mesa0, libgl1-mesa-dri)"
     chosen = sorted(name for name in os.environ if name.startswith(("__EGL_", "EGL_PLATFORM", "LIBGL_", "MESA_GL_", "MESA_LOADER_", "GALLIUM_")))
     return ("a software renderer is installed; unset " + ", ".join(chosen)) if chosen else "a software renderer is installed; read the output of eglinfo (mesa-utils)"
 

@@ -19,6 +19,7 @@ from tactus.doctor import bus, clocks, devices, realtime, sandbox
 from tactus.doctor.line import GOOD, MISSING, WEAK
 from tactus.launch.equipment import has_sound_card
 from tactus.launch.network import ROUTE, candidates, is_allowed
+from tactus.option_parser import OptionParser
 
 COLOURS = {GOOD: "\x1b[32m", WEAK: "\x1b[33m", MISSING: "\x1b[31m"}
 SIGN = {GOOD: "good   ", WEAK: "weak   ", MISSING: "missing"}
@@ -60,17 +61,14 @@ def examine(seconds, port, out):
 
 
 def main(words):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, usage=argparse.SUPPRESS,
-                                     add_help=False)
+    parser = OptionParser(prog="tactus doctor", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, usage=argparse.SUPPRESS,
+                          add_help=False)
     parser.add_argument("--help", "-h", action="store_true")
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--port", type=int, default=7667)
     parser.add_argument("--out", default=os.getcwd())
     parser.add_argument("--json")
-    try:
-        options = parser.parse_args(words)
-    except SystemExit as end:
-        sys.exit(1 if end.code else 0)
+    options = parser.parse_args(words)
     if options.help:
         print(__doc__)
         return 0

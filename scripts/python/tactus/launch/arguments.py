@@ -7,7 +7,7 @@ import time
 import xml.etree.ElementTree
 
 from tactus.launch import hands, scene, walls
-from tactus.paths import REPOSITORY, SCENES
+from tactus.paths import SCENES, settings_table
 from tactus.refusal import Refusal
 from tactus.tables import read_rows
 
@@ -52,6 +52,8 @@ class Plan:
     replay: list = dataclasses.field(default_factory=list)  # command line of replay
     recorder: list = dataclasses.field(default_factory=list)  # options of the recorder: size of its files, tags
     live: int = None  # port of the live page; 0: any free port; None: no page
+    programs: dict = dataclasses.field(default_factory=dict)  # of --program: {program: path of the one that replaces it}
+    json: pathlib.Path = None  # of --json: a second place for summary.json
     player: bool = False  # a simulated player holds the device of the first tool
     virtual: list = None  # options of virtual_time; None: a live run in real time
 
@@ -77,7 +79,7 @@ class Plan:
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise Refusal(f"{message}; see scripts/run --help")
+        raise Refusal(f"{message}; see tactus run --help")
 
 
 def parse(words, here):
@@ -87,6 +89,8 @@ def parse(words, here):
     parser.add_argument("--scene-folder", action="append", default=[])
     parser.add_argument("--seconds", default="20")
     parser.add_argument("--out")
+    parser.add_argument("--json")
+    parser.add_argument("--program", action="append", default=[])
     parser.add_argument("--without", action="append", default=[])
     parser.add_argument("--device", action="append", default=[])
     parser.add_argument("--room")
@@ -136,15 +140,31 @@ def parse(words, here):
                 degrade=profile(here, a.degrade), playout=playout(a),
                 window=a.window, recorder=recording(a), live=live_port(a.live), listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
-                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player)
+                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player,
+                json=(here / a.json).absolute() if a.json else None, programs=programs(here, a.program))
     if plan.player:
         if plan.devices or hands.FIRST in plan.without:
             raise Refusal("--player holds the device of the first tool itself; remove --device and --without haptic_node")
         plan.devices = {"": f"external:{PLAYER}"}
+    if plan.programs and plan.virtual is not None:
+        raise Refusal("--program and --virtual-time contradict each other: virtual time holds all nodes in one program; remove one")
     if plan.window and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise Refusal("visual_node: --window needs a display and neither DISPLAY nor WAYLAND_DISPLAY is set; remove "
                       "--window and watch video.mp4")
     return plan
+
+
+def programs(here, words):
+    """{program: absolute path of the one that replaces it} of --program. Raises Refusal."""
+    found = {}
+    for word in words:
+        name, equals, path = word.partition("=")
+        if name not in REMOVABLE or not path:
+            raise Refusal(f"--program {word}: write it as NODE=PATH with one of {', '.join(REMOVABLE)}")
+        found[name] = (here / path).absolute()
+        if not found[name].is_file() or not os.access(found[name], os.X_OK):
+            raise Refusal(f"{name}: --program {path} is not a program; name an executable file")
+    return found
 
 
 def with_live_port(words):
@@ -317,7 +337,7 @@ def settings(words, others):
             raise Refusal(f"--set {word}: write it as NODE.NAME=VALUE, for example audio_node.gain=0.5")
         if node not in ("sim_node", *SENSES, *others):
             raise Refusal(f"--set {word}: {node} has no settings; choose from sim_node, {', '.join((*SENSES, *others))}")
-        names = [row["name"] for row in read_rows(REPOSITORY / program(node) / "settings.csv", may_end_early=True)]
+        names = [row["name"] for row in read_rows(settings_table(program(node)), may_end_early=True)]
         if name not in names:
             raise Refusal(f"{node}: there is no setting {name}; docs/settings.md lists them all")
         if node in others:

@@ -58,7 +58,7 @@ def commands(plan, run_id, git):
     if plan.degrade:
         for name in (*plan.senses(), *plan.players(), "sync_node", "sim_node"):
             own[name] = [*own.get(name, []), "--degrade", str(plan.degrade)]
-    return {name: [str(BIN / plan.program(name)), *own.get(name, []), *common(plan, run_id),
+    return {name: [str(plan.programs.get(plan.program(name), BIN / plan.program(name))), *own.get(name, []), *common(plan, run_id),
                    *(word for s in plan.settings.get(name, []) for word in ("--set", s))] for name in plan.nodes()}
 
 

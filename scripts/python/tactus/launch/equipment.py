@@ -4,13 +4,14 @@ import os
 import shutil
 
 from tactus.launch import sound_server
+from tactus.paths import packages_remedy
 
 
 def missing_equipment(plan):
     """One sentence for each missing item."""
     found = []
     if "visual_node" not in plan.without and not shutil.which("ffmpeg"):
-        found.append("visual_node: ffmpeg is not installed, so video.mp4 is not written; run scripts/setup")
+        found.append(f"visual_node: ffmpeg is not installed, so video.mp4 is not written; {packages_remedy('run')}")
     server = os.environ.get("PULSE_SERVER")
     if plan.listen and "audio_node" not in plan.without and sound_server.is_silent(server):
         found.append(f"audio_node: --listen, but the sound server of PULSE_SERVER ({server}) does not answer, so sound may only be written to audio.wav; "

@@ -8,7 +8,7 @@ import time
 
 from tactus.launch import privileges
 from tactus.launch.cluster import die_with_parent
-from tactus.paths import BIN, SCRIPTS, tactus_command
+from tactus.paths import BIN, SCRIPTS, remedy, tactus_command
 from tactus.refusal import Refusal
 from tactus.terminal import report_run
 
@@ -23,7 +23,7 @@ class Page:
         """Raises Refusal when the port is in use, or the page was not built."""
         for path in (BIN / "live_server", PAGE / "main.js"):
             if not path.is_file():
-                raise Refusal(f"--live: {path} does not exist; run scripts/build live_server and scripts/live/bundle")
+                raise Refusal(f"--live: {path} does not exist; {remedy('live_server and scripts/live/bundle')}")
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         try:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

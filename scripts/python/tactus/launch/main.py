@@ -7,6 +7,7 @@ import time
 from tactus import own_files, signals, terminal
 from tactus.launch import arguments, cluster, cluster_folder, delays, equipment, hands, live, network, priority, privileges, virtual, walls
 from tactus.launch.results import WORLD_STOPPED, git_commit, summarise
+from tactus.paths import remedy
 from tactus.refusal import Interrupted, Refusal, sentence_of
 from tactus.terminal import report_run
 
@@ -85,7 +86,7 @@ def refuse_foreign_folder(path, found):
 def inputs(plan):
     """Files and folders that the nodes read."""
     window = [os.environ["XAUTHORITY"]] if plan.window and os.environ.get("XAUTHORITY") else []
-    return [os.getcwd(), cluster.BIN, cluster.BIN / "sim_node", plan.scene.parent, plan.scene, *plan.scene_folders, *filter(None, [plan.degrade, plan.shaders]), *plan.replay[:1], *window]
+    return [os.getcwd(), cluster.BIN, cluster.BIN / "sim_node", plan.scene.parent, plan.scene, *plan.scene_folders, *filter(None, [plan.degrade, plan.shaders]), *plan.replay[:1], *plan.programs.values(), *window]
 
 
 def run(plan, watch=watch_over):
@@ -94,12 +95,14 @@ def run(plan, watch=watch_over):
     kept = privileges.needed(inputs(plan))
     if plan.virtual is not None:
         return virtual.run(plan, signals.Stop(), claim_out, kept)
+    if plan.programs:  # programs of the user find the readers of foreign formats there (sync/sandbox/reader_child.cpp)
+        os.environ["TACTUS_BIN"] = str(cluster.BIN)
     stop = signals.Stop()
     git = git_commit()
     run_id = time.time_ns()
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), "watch", "summarise", "export_csv", "export_events"]:
         if not os.access(cluster.BIN / name, os.X_OK):
-            raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
+            raise Refusal(f"{name}: {cluster.BIN / name} is missing; {remedy()}")
     cluster.check(cluster.commands(plan, run_id, git), stop, kept)
     for name in arguments.unknown_modalities(plan):
         report_run(f"{name!r} is not a modality of this run; check the names in the profile and in --soa")
@@ -200,12 +203,22 @@ def starts_with_program_name(sentence):
     return program.endswith("_node") or program.startswith((f"{hands.FIRST}_", f"{walls.FIRST}_")) or program in ("recorder", "network", "supervision", "supervisor", "summarise", "export_csv", "export_events")
 
 
+def copy_summary(plan):
+    """Writes summary.json also to the file of --json, which may be a pipe. Raises OSError."""
+    summary = plan.out / "summary.json"
+    if summary.is_file():
+        with open(plan.json, "wb") as file:
+            file.write(summary.read_bytes())
+
+
 def main(words):
     only_arguments = words[:1] == ["--arguments-only"]
     terminal.prepare()
     try:
         plan = arguments.parse(words[1:] if only_arguments else words, os.getcwd())
         errors = [] if only_arguments else run(plan)
+        if plan.json and not only_arguments:
+            copy_summary(plan)
     except Refusal as refusal:
         errors = [str(refusal)]
     except OSError as error:

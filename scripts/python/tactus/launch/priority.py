@@ -2,6 +2,7 @@
 import os
 import subprocess
 
+from tactus.paths import packages_remedy
 from tactus.refusal import Refusal
 
 HIGHEST = 70  # of audio_node; all others are lower
@@ -14,10 +15,10 @@ def expectation(choice):
     if is_granted():
         return "real-time priority: audio 70, haptic 60, sim 50, sync_node and recorder 40; visual nodes normal"
     if choice == "require":
-        raise Refusal(f"haptic_node: --realtime require, but {refusal_reason()}; run scripts/setup --realtime and log in again, or "
+        raise Refusal(f"haptic_node: --realtime require, but {refusal_reason()}; {packages_remedy('--realtime')} and log in again, or "
                       "use --realtime try")
     return (f"no real-time priority ({refusal_reason()}): the run works, but beside a busy renderer a 1 ms loop wakes up to 3 ms "
-            "late (p99); scripts/setup --realtime allows it")
+            "late (p99); tactus setup --realtime allows it")
 
 
 def is_granted():

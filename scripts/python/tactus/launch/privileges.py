@@ -71,4 +71,4 @@ def description(kept):
     also = {READ_ALL: "; they also read all files, because root alone may not open the scene or its folder", RECEIVE_BUFFER: "; they open their "
             f"sockets with CAP_NET_ADMIN and then give it up, because net.core.rmem_max is below {RECEIVE_BUFFER_BYTES}"}
     return ("runs as root: the nodes keep only real-time priority and locked memory" + "".join(also.get(name, "") for name in kept) +
-            "; an ordinary user suffices (scripts/setup --realtime)")
+            "; an ordinary user suffices (tactus setup --realtime)")

@@ -39,6 +39,7 @@ def parse(words, here):
         parser.add_argument("--" + option, action="store_true")
     parser.add_argument("--realtime", choices=("require", "try", "off"), default="try")
     parser.add_argument("--seed")
+    parser.add_argument("--json")
     parser.add_argument("--run")
     parser.add_argument("--network", choices=("auto", "private", "host"), default="auto")
     parser.add_argument("--port", default="7667")
@@ -82,7 +83,8 @@ def parse(words, here):
         degrade=arguments.profile(here, a.degrade), playout=arguments.playout(a), window=a.window, listen=a.listen,
         realtime=a.realtime, seed=int(arguments.number("--seed", a.seed or str(described["seed"]), 0, 2**63 - 1, "", whole=True)),
         network=a.network, port=int(arguments.number("--port", a.port, 1024, 65534, "", whole=True)),
-        settings=arguments.settings(a.set, others), world="replay", replay=words), a.stay, described
+        settings=arguments.settings(a.set, others), world="replay", replay=words,
+        json=(here / a.json).absolute() if a.json else None), a.stay, described
 
 
 def watcher(control, stay):
@@ -133,6 +135,8 @@ def main(words):
         plan.out_is_ours = False
         errors = supervisor.run(plan, watcher(control, stay))
         (plan.out / "control").unlink(missing_ok=True)
+        if plan.json:
+            supervisor.copy_summary(plan)
     except Refusal as refusal:
         errors = [str(refusal)]
     except OSError as error:

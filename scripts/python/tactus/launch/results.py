@@ -4,15 +4,17 @@ import subprocess
 
 from tactus import terminal
 from tactus.launch import privileges
-from tactus.paths import BIN, REPOSITORY
+from tactus.paths import BIN, INSTALLED, REPOSITORY
 
 # In the sentence of a world whose state is not finite (sim_node/world/simulation.cpp).
 WORLD_STOPPED = "so the world stops"
 
 
 def git_commit():
-    """The commit of this repository, with + for modified files; "unknown" without git. A repository that contains this one, or that the variables
+    """The commit of this installation, or of this repository, with + for modified files; "unknown" without git. A repository that contains this one, or that the variables
     of git name, is another."""
+    if INSTALLED:
+        return INSTALLED["commit"]
     git = ["git", "-c", "safe.directory=*", "-C", str(REPOSITORY)]
     variables = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     variables["GIT_CEILING_DIRECTORIES"] = str(REPOSITORY.parent)

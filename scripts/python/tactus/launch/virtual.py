@@ -7,6 +7,7 @@ import time
 
 from tactus.launch import arguments, cluster, delays, privileges
 from tactus.launch.results import WORLD_STOPPED, git_commit, summarise
+from tactus.paths import remedy
 from tactus.refusal import Refusal
 from tactus.terminal import report_error, report_run
 
@@ -36,7 +37,7 @@ def run(plan, stop, claim_out, kept=privileges.KEPT):
     """Executes one run in the folder that claim_out locks. kept: the capabilities that the nodes of root keep. Returns the errors, one sentence each. Raises Refusal when it does not start."""
     for name in [*dict.fromkeys(plan.program(n) for n in plan.nodes()), *PROGRAMS]:
         if not os.access(cluster.BIN / name, os.X_OK):
-            raise Refusal(f"{name}: {cluster.BIN / name} is not built; run scripts/build")
+            raise Refusal(f"{name}: {cluster.BIN / name} is missing; {remedy()}")
     git = git_commit()
     words = commands(plan, git)
     cluster.check(words, stop, kept)

@@ -1,13 +1,12 @@
 """The walls of a room: one visual_node for each, so that a slow one does not delay the others."""
 import re
 
-from tactus.paths import REPOSITORY
+from tactus.paths import ROOMS
 from tactus.refusal import Refusal
 from tactus.tables import read_rows
 
 FIRST = "visual_node"  # draws the first wall, or the camera of the scene without a room
 LONGEST_NAME = 40      # of a process name, which is also the name of its folder, log and video
-ROOMS = REPOSITORY / "visual_node" / "rooms"
 
 
 def room(here, text):

@@ -4,7 +4,7 @@ import os
 import subprocess
 
 from tactus import terminal
-from tactus.paths import BIN
+from tactus.paths import BIN, remedy
 from tactus.refusal import Refusal
 
 
@@ -15,14 +15,14 @@ def describe(log, run=1, command=lambda words: words, folder=BIN):
     """
     program = folder / "replay"
     if not os.access(program, os.X_OK):
-        raise Refusal(f"replay: {program} is not built; run scripts/build")
+        raise Refusal(f"replay: {program} is missing; {remedy()}")
     done = subprocess.run(command([program, log, "--describe", "--run", str(run)]), capture_output=True, text=True, errors="replace", check=False)
     if done.returncode != 0:
         raise Refusal(done.stderr.strip().split("\n")[-1] or f"replay: cannot read {log}")
     try:
         return json.loads(done.stdout)
     except ValueError:
-        raise Refusal(f"replay: {program} gave no description of {log}; run scripts/build") from None
+        raise Refusal(f"replay: {program} gave no description of {log}; {remedy()}") from None
 
 
 def report_warnings(name, description):

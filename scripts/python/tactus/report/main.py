@@ -21,7 +21,8 @@ import tempfile
 
 from tactus import own_files
 from tactus.log import description
-from tactus.paths import BIN
+from tactus.option_parser import OptionParser
+from tactus.paths import BIN, packages_remedy, remedy
 from tactus.refusal import Refusal
 
 
@@ -30,7 +31,7 @@ def refuse(sentence):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="tactus report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OptionParser(prog="tactus report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", nargs="+", metavar="LOG")
     parser.add_argument("--out", metavar="FILE.html")
     parser.add_argument("--name", action="append", default=[])
@@ -61,7 +62,7 @@ def tables_of(log, folder, run):
                   [BIN / "export_log", log, "--out", folder, "--channels", log_tables.CHANNELS, *quiet],
                   [BIN / "export_events", log, "--out", folder, *quiet], [BIN / "export_csv", log, "--out", folder, *quiet]):
         if not os.access(words[0], os.X_OK):
-            refuse(f"{words[0]} is not built; run scripts/build --programs")
+            refuse(f"{words[0]} is missing; {remedy('--programs')}")
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
         # summarise also exits with 1 after a lost event, which the report shows.
         if done.returncode != 0 and not (words[0].name == "summarise" and os.path.exists(os.path.join(folder, "summary.json"))):
@@ -75,7 +76,7 @@ def main(words):
         from tactus.log import log_tables
         from tactus.report import report
     except ImportError as error:
-        refuse(f"{error.name} is missing; run scripts/setup report")
+        refuse(f"{error.name} is missing; {packages_remedy('report')}")
     with tempfile.TemporaryDirectory() as folder:
         logs = []
         for i, (log, name) in enumerate(zip(options.log, options.name)):

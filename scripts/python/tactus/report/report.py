@@ -1,5 +1,5 @@
 """A report on one or several logs: its sections, in order. The report states which data a log lacks."""
-from tactus.paths import REPOSITORY
+from tactus.paths import THRESHOLDS
 from tactus.report import sections, traces, words
 from tactus.tables import read_rows
 
@@ -9,7 +9,7 @@ class Report:
 
     def __init__(self, logs, gallery):
         self.logs, self.gallery = logs, gallery
-        self.thresholds = read_rows(REPOSITORY / "sync" / "presentation" / "thresholds.csv")
+        self.thresholds = read_rows(THRESHOLDS)
         self.tables, self.sources, self.missing = 0, [], []
 
     @property

@@ -36,7 +36,8 @@ import time
 
 from tactus import own_files
 from tactus.log import description
-from tactus.paths import BIN
+from tactus.option_parser import OptionParser
+from tactus.paths import BIN, remedy
 from tactus.refusal import Refusal
 from tactus.rerender import changed, live, render
 
@@ -45,7 +46,7 @@ MAX_ONSET_SHIFT_MS = 1.0  # maximum shift of onsets, live and rerendered
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="tactus rerender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = OptionParser(prog="tactus rerender", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", metavar="LOG")
     parser.add_argument("--degrade", action="append", default=[], metavar="PROFILE.xml")
     parser.add_argument("--only", action="append", choices=list(render.SENSES))
@@ -77,7 +78,7 @@ def arguments(words):
     options.programs = str(BIN)
     for sense in options.only:
         if not os.access(os.path.join(options.programs, render.SENSES[sense][0]), os.X_OK):
-            refuse(f"{render.SENSES[sense][0]} is not built; run scripts/build --programs")
+            refuse(f"{render.SENSES[sense][0]} is missing; {remedy('--programs')}")
     return options
 
 

@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 
 from tactus import terminal
-from tactus.paths import BIN
+from tactus.paths import BIN, remedy
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import felt_properties, fonts, study_file, texts
 
@@ -50,7 +50,7 @@ def profiles(study):
     """Checks all degradations of the study with sync_node; returns a line that reports the result. Raises Refusal with the reason of sync_node."""
     elements = list(dict.fromkeys([*study.base, *(e for c in study.conditions for level in (c.levels or (None,)) for e in c.elements(level))]))
     if not (BIN / "sync_node").is_file():
-        return f"profiles not checked: {BIN} holds no sync_node; run scripts/build"
+        return f"profiles not checked: {BIN} holds no sync_node; {remedy()}"
     if not elements:
         return "the study has no degradations"
     with tempfile.TemporaryDirectory() as folder:
@@ -138,5 +138,5 @@ def main(words):
     except Refusal as refusal:
         terminal.report_refusal(f"study: {refusal}")
     except (OSError, subprocess.TimeoutExpired) as error:
-        terminal.report_error(f"study: {sentence_of(error) if isinstance(error, OSError) else 'sync_node did not end in time; run scripts/build again'}")
+        terminal.report_error(f"study: {sentence_of(error) if isinstance(error, OSError) else f'sync_node did not end in time; {remedy()}'}")
     return 1

@@ -3,7 +3,7 @@ import subprocess
 import unicodedata
 
 from tactus.commands import prepare
-from tactus.paths import BIN
+from tactus.paths import BIN, packages_remedy, remedy
 from tactus.refusal import Refusal
 from tactus.terminal import report
 
@@ -29,7 +29,7 @@ def uncovered(lines):
     done = subprocess.run([BIN / "draw_text", "--check"], input="\n".join(lines).encode(), capture_output=True, timeout=TIMEOUT_S, check=False)
     if done.returncode:
         said = done.stderr.decode(errors="replace").strip().splitlines() or [f"draw_text: ended with {done.returncode}"]
-        raise Refusal(f"{said[-1]}; run scripts/setup fonts and scripts/build again")
+        raise Refusal(f"{said[-1]}; {packages_remedy('fonts')} and {remedy()}")
     return [chr(int(line[2:], 16)) for line in done.stdout.decode().split()]
 
 
@@ -46,10 +46,10 @@ def words(study):
         return []
     missing = uncovered(shown(study))
     if missing is None:
-        return ["fonts not checked: draw_text is not built; run scripts/build"]
+        return [f"fonts not checked: draw_text is missing; {remedy()}"]
     if not missing:
         return ["the installed fonts cover all texts"]
-    return [f"no installed font covers {names(missing)}; run scripts/setup fonts, or install another font that does"]
+    return [f"no installed font covers {names(missing)}; {packages_remedy('fonts')}, or install another font that does"]
 
 
 def provide(study, window):

@@ -5,7 +5,7 @@ import subprocess
 import time
 
 from tactus import own_files
-from tactus.paths import SCRIPTS
+from tactus.paths import tactus_command
 from tactus.refusal import Refusal
 
 LONGEST_S = 86400  # limit of scripts/run
@@ -26,7 +26,7 @@ class LiveCluster:
         self.out = out
         self.log = out.with_suffix(".log")
         with own_files.open_private(self.log) as said:  # the address of the live page with its token is in it
-            self.process = subprocess.Popen([str(SCRIPTS / "run"), *words, "--seconds", str(LONGEST_S), "--out", str(out)],
+            self.process = subprocess.Popen([*tactus_command("run"), *words, "--seconds", str(LONGEST_S), "--out", str(out)],
                                             stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT, start_new_session=True,
                                             preexec_fn=die_with_parent)
 

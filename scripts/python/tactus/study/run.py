@@ -27,7 +27,7 @@ def parsed(words):
     p.add_argument("--window", action="store_true", help="shows the questions in the window of the visual node")
     p.add_argument("--live", nargs="?", const="0", metavar="PORT", help="shows the questions on the live page; prints the addresses for participant and experimenter")
     p.add_argument("--listen", action="store_true", help="also plays on the sound card")
-    p.add_argument("--device", help="haptic device of the participant, as for scripts/run --device; default: the hand of the apparatus")
+    p.add_argument("--device", help="haptic device of the participant, as for tactus run --device; default: the hand of the apparatus")
     p.add_argument("--set", action="append", default=[], metavar="NODE.NAME=VALUE", help="a setting of the cluster; may be repeated")
     p.add_argument("--most", type=int, help="ends after this number of trials; the same command resumes later")
     p.add_argument("--json", metavar="FILE", help="also writes the final summary to FILE")

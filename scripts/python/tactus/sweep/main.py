@@ -6,6 +6,7 @@ import sys
 import time
 
 from tactus import signals, terminal
+from tactus.paths import remedy
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import study_file
 from tactus.sweep import adopted, player
@@ -90,7 +91,7 @@ def main(words):
     try:
         a = parsed(words)
         if not os.access(player.PROGRAM, os.X_OK):
-            raise Refusal(f"{player.PROGRAM}: does not exist; run scripts/build")
+            raise Refusal(f"{player.PROGRAM}: does not exist; {remedy()}")
         folder = SweepFolder(a.out) if a.resume else new(a)
         folder.hold()
         if a.table:

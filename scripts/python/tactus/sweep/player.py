@@ -3,7 +3,7 @@ import json
 import subprocess
 import tempfile
 
-from tactus.paths import BIN
+from tactus.paths import BIN, remedy
 from tactus.refusal import Refusal
 
 PROGRAM = BIN / "play_games"
@@ -22,7 +22,7 @@ class Player:
                                             stderr=subprocess.PIPE, text=True)
         except OSError as error:
             self.scratch.cleanup()
-            raise Refusal(f"{PROGRAM}: cannot be run ({error.strerror}); run scripts/build") from None
+            raise Refusal(f"{PROGRAM}: cannot be run ({error.strerror}); {remedy()}") from None
         return self
 
     def __exit__(self, *_):

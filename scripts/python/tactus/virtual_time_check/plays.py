@@ -3,7 +3,7 @@ import os
 import shutil
 import subprocess
 
-from tactus.paths import SCRIPTS
+from tactus.paths import tactus_command
 from tactus.refusal import Refusal
 from tactus.study import games
 from tactus.sweep.player import Player
@@ -27,7 +27,7 @@ def load():
 
 def run(scene, seconds, seed, settings, out, virtual):
     """RunTables of a run of the scene with its scripted hand. Raises Refusal."""
-    words = [str(SCRIPTS / "run"), str(scene), "--seconds", f"{seconds:g}", "--seed", str(seed), "--out", str(out)]
+    words = [*tactus_command("run"), str(scene), "--seconds", f"{seconds:g}", "--seed", str(seed), "--out", str(out)]
     words += [w for s in settings for w in ("--set", s)] + (["--virtual-time"] if virtual else [])
     done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False)
     try:

@@ -1,7 +1,7 @@
 """Converts a geometry file to glTF with material, relief, friction, modes and appearance of the object."""
 from tactus.commands import prepare
 
-USAGE = """Usage: tactus convert-geometry IN OUT.glb|OUT.gltf [--material NAME] [--bump FILE.png --bump-size "U V" --bump-height H]
+USAGE = """Usage: tactus convert IN OUT.glb|OUT.gltf [--material NAME] [--bump FILE.png --bump-size "U V" --bump-height H]
          [--friction-map FILE.png --friction-size "U V" --friction-factors "BLACK WHITE"] [--modes FILE.csv]
          [--shader NAME] [--colour-map FILE] [--normal-map FILE.png] [--reflectance R] [--uniforms "NAME N...; ..."] [--force]
 

@@ -1,7 +1,7 @@
-"""The command `tactus simulation`: pauses, steps, resets and changes the simulation of a running cluster."""
+"""The command `tactus simulate`: pauses, steps, resets and changes the simulation of a running cluster."""
 from tactus.commands import request_program
 
-USAGE = """Usage: tactus simulation COMMAND [--in OUT_DIR]
+USAGE = """Usage: tactus simulate COMMAND [--in OUT_DIR]
 
   pause                          stops simulation time; haptic devices still feel the surfaces, which are rigid
   resume                         continues the simulation
@@ -19,4 +19,4 @@ Prints the result, or one sentence with the reason for the failure. docs/command
 
 
 def main(words):
-    return request_program.main("simulation", USAGE, words)
+    return request_program.main("simulation", USAGE, words, command="simulate")
