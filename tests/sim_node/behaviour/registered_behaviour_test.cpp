@@ -26,7 +26,7 @@ class HalfWeight : public SingleGroup {
 }  // namespace
 
 TEST_CASE("A registered behaviour model moves the bodies of a world that names it, and another name is refused") {
-  register_behaviour("half_weight", {.impulses = true, .needs_gaps = true},
+  register_behaviour("half_weight", {.name = {}, .impulses = true, .needs_gaps = true},
                      [](const WorldDef& world, const Settings& settings, Ids& ids) { return std::make_unique<HalfWeight>(world, settings, ids); });
   CHECK(behaviour_model("custom:half_weight").needs_gaps);
   WorldDef world = empty_world();
