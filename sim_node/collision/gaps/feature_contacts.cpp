@@ -10,7 +10,6 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using features::FeaturePair;
 using features::FeatureTrees;
-using features::kNear_m;
 using features::kSlack_rad;
 using features::MeshFeatures;
 
@@ -25,8 +24,6 @@ bool over_prism(const Vector3d& p, const Triangle& t, double slack_m) {
   return true;
 }
 
-bool in_range(double gap_m, double reach_m) { return gap_m > kNear_m && gap_m <= reach_m; }
-
 // Whether no edge at the vertex is much nearer to the face `height` away than the vertex.
 bool nearest_at(const MeshFeatures& mesh, int vertex, const Vector3d& to_foot_m, double height_m) {
   return mesh.nearest(vertex, to_foot_m, nearer_limit_m(height_m, nearer_share(true, false)) - kFilterRounding_m);
@@ -35,8 +32,10 @@ bool nearest_at(const MeshFeatures& mesh, int vertex, const Vector3d& to_foot_m,
 struct Both {
   const FeatureTrees &a, &b;
   const Isometry3d& b_from_a;
-  double reach_m;
+  double above_m, reach_m;
   std::vector<PointPair>& out;
+
+  bool in_range(double gap_m) const { return gap_m > above_m && gap_m <= reach_m; }
 
   Vector3d vertex_a(int v) const { return b_from_a * a.mesh.vertices[static_cast<std::size_t>(v)]; }
   const Vector3d& vertex_b(int v) const { return b.mesh.vertices[static_cast<std::size_t>(v)]; }
@@ -56,7 +55,7 @@ struct Both {
     p.on_a_m = on_a, p.on_b_m = on_b;
     const Vector3d way = on_b - on_a;
     p.gap_m = way.norm();
-    if (!in_range(p.gap_m, reach_m)) return;
+    if (!in_range(p.gap_m)) return;
     p.normal = way / p.gap_m;
     if (leaves(p.normal)) add(p, triangle_a, triangle_b);
   }
@@ -66,7 +65,7 @@ struct Both {
     if (t.normal.isZero()) return;
     const Vector3d p = vertex_a(v);
     const double h = (p - t.v[0]).dot(t.normal);
-    if (!in_range(std::abs(h), reach_m) || !over_prism(p, t, kOnEdge_m)) return;
+    if (!in_range(std::abs(h)) || !over_prism(p, t, kOnEdge_m)) return;
     if (!nearest_at(a.mesh, v, in_a(-h * t.normal), std::abs(h))) return;
     add(layer2::over_face(p, t, h, true), a.mesh.triangle_against(v, in_a(t.normal)), face);
   }
@@ -79,7 +78,7 @@ struct Both {
     if (about > reach_m + kOnEdge_m || !over_prism(seen, own, 2 * kOnEdge_m)) return;
     const Triangle t = in_frame_of_b(own, b_from_a);
     const double h = (p - t.v[0]).dot(t.normal);
-    if (!in_range(std::abs(h), reach_m) || !over_prism(p, t, kOnEdge_m)) return;
+    if (!in_range(std::abs(h)) || !over_prism(p, t, kOnEdge_m)) return;
     if (!nearest_at(b.mesh, v, -h * t.normal, std::abs(h))) return;
     add(layer2::over_face(p, t, h, false), face, b.mesh.triangle_against(v, t.normal));
   }
@@ -112,7 +111,7 @@ struct Both {
     for (int i = 0; i < 3; ++i) t.v[i] = b_from_a * a.mesh.triangles[static_cast<std::size_t>(x.triangle)].v[i];
     layer2::between_edges(t, static_cast<std::size_t>(x.side), b.mesh.triangles[static_cast<std::size_t>(y.triangle)],
                           static_cast<std::size_t>(y.side), reach_m, [&](const PointPair& p) {
-                            if (p.gap_m > kNear_m && x.leaves(in_a(p.normal), kSlack_rad) &&
+                            if (p.gap_m > above_m && x.leaves(in_a(p.normal), kSlack_rad) &&
                                 y.leaves(-p.normal, kSlack_rad))
                               add(p, x.triangle, y.triangle);
                           });
@@ -127,10 +126,10 @@ Triangle in_frame_of_b(const Triangle& t, const Isometry3d& b_from_a) {
   return m;
 }
 
-void FeatureContacts::find(const FeatureTrees& a, const FeatureTrees& b, const Isometry3d& b_from_a, double reach_m,
-                           std::vector<PointPair>& out) {
+void FeatureContacts::find(const FeatureTrees& a, const FeatureTrees& b, const Isometry3d& b_from_a, double above_m,
+                           double reach_m, std::vector<PointPair>& out) {
   const Isometry3d a_from_b = b_from_a.inverse(Eigen::Isometry);
-  const Both both{a, b, b_from_a, reach_m, out};
+  const Both both{a, b, b_from_a, above_m, reach_m, out};
   search_.find(a.vertices, b.faces, b_from_a, reach_m, found_);
   for (const FeaturePair& p : found_) both.vertex_over_face(p.from, p.to);
   search_.find(b.vertices, a.faces, a_from_b, reach_m, found_);

@@ -82,7 +82,7 @@ bool comes_first(const PointPair& x, const PointPair& y) {
   return gap_x != gap_y ? gap_x < gap_y : position_first(x, y);
 }
 
-// The pairs of triangles that overlap or nearly touch, whose directions tell nothing.
+// The pairs of triangles that overlap or nearly touch.
 void MeshNearest::find_near(const Mesh& a, const Mesh& b, const Isometry3d& b_from_a, double tolerance_m,
                             std::vector<PointPair>& pairs) {
   facing_.find({a.layers.tree, a.cones, a.pose}, {b.layers.tree, b.cones, b.pose}, tolerance_m, leaves_);
@@ -148,12 +148,19 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor
                        std::vector<PointPair>& pairs) {
   const Isometry3d b_from_a = b.pose.inverse(Eigen::Isometry) * a.pose;
   pairs.clear();
-  find_near(a, b, b_from_a, std::min(reach_m, features::kNear_m), pairs);
-  // A pair that overlaps by up to kMaxOriented_m counts as nearer than all others, so the first step covers that.
+  // Triangle by triangle where orient() decides, so that both searches decide on the same triangles. The first step
+  // covers that distance, because an overlap counts as nearer than all other pairs.
+  double near_m = std::min(reach_m, kMaxOrientedUnpierced_m);
+  find_near(a, b, b_from_a, near_m, pairs);
+  if (pierced_) {
+    pairs.clear();
+    near_m = std::min(reach_m, kMaxOriented_m);
+    find_near(a, b, b_from_a, near_m, pairs);
+  }
   double done_m = -1;
   for (double step_m = std::min(reach_m, kFirstStep_m);; step_m = std::min(reach_m, 2 * step_m)) {
     if (done_m >= 0) pairs.clear();
-    features_.find(a.features, b.features, b_from_a, step_m, pairs);
+    features_.find(a.features, b.features, b_from_a, std::max(near_m, done_m), step_m, pairs);
     list_candidates(a, b, done_m, step_m, pairs);
     if (!report(a, b, visitor, pairs) || step_m >= reach_m) return;
     done_m = step_m;

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "sim_node/collision/detector.h"
+#include "sim_node/collision/gaps/mesh_nearest.h"
 #include "sim_node/collision/nearest_first.h"
 #include "sim_node/scene/meshes/mesh_file.h"
 #include "tests/sim_node/support/meshes.h"
@@ -111,7 +112,11 @@ TEST_CASE("The nearest-first search over two meshes finds the contacts that a to
     for (int i = 0; i < 60; ++i) {
       const Isometry3d at_a = pose(s, random), at_b = Isometry3d::Identity();
       Kept all, nearest;
-      nearest_first_of_all(*detector, a, at_a, b, at_b, s.reach_m, all, scratch);
+      // Equally near pairs in the order of the search.
+      detector->query(a, at_a, b, at_b, s.reach_m, scratch);
+      std::stable_sort(scratch.begin(), scratch.end(), gaps::comes_first);
+      for (const PointPair& p : scratch)
+        if (!all.is_redundant(p)) all.visit(p);
       nearest_first(*detector, a, at_a, b, at_b, s.reach_m, nearest, scratch);
       INFO(s.name << ", pose " << i);
       CHECK(nearest.pairs.size() == all.pairs.size());
