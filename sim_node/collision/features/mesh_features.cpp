@@ -118,13 +118,12 @@ MeshFeatures::MeshFeatures(const std::vector<Triangle>& of) : triangles(of) {
   first_triangle.push_back(triangles_at.size());
 }
 
-int MeshFeatures::triangle_against(int vertex, const Vector3d& direction) const {
+int MeshFeatures::triangle_across(int vertex, const Vector3d& direction) const {
   const auto v = static_cast<std::size_t>(vertex);
+  const auto facing = [&](int t) { return std::abs(triangles[static_cast<std::size_t>(t)].normal.dot(direction)); };
   int best = triangles_at[first_triangle[v]];
   for (std::size_t i = first_triangle[v] + 1; i < first_triangle[v + 1]; ++i)
-    if (triangles[static_cast<std::size_t>(triangles_at[i])].normal.dot(direction) <
-        triangles[static_cast<std::size_t>(best)].normal.dot(direction))
-      best = triangles_at[i];
+    if (facing(triangles_at[i]) < facing(best)) best = triangles_at[i];
   return best;
 }
 

@@ -72,8 +72,8 @@ struct MeshFeatures {
   DirectionCone cone_of_edge(int edge) const;
   DirectionCone cone_of_vertex(int vertex) const;
 
-  // Of the triangles at a vertex, the one that faces most against the direction.
-  int triangle_against(int vertex, const Eigen::Vector3d& direction) const;
+  // Of the triangles at a vertex, the one that faces least along or against the direction (unit).
+  int triangle_across(int vertex, const Eigen::Vector3d& direction) const;
 
   const std::vector<Triangle>& triangles;
   std::vector<Eigen::Vector3d> vertices;

@@ -67,7 +67,7 @@ struct Both {
     const double h = (p - t.v[0]).dot(t.normal);
     if (!in_range(std::abs(h)) || !over_prism(p, t, kOnEdge_m)) return;
     if (!nearest_at(a.mesh, v, in_a(-h * t.normal), std::abs(h))) return;
-    add(layer2::over_face(p, t, h, true), a.mesh.triangle_against(v, in_a(t.normal)), face);
+    add(layer2::over_face(p, t, h, true), a.mesh.triangle_across(v, in_a(t.normal)), face);
   }
   void face_under_vertex(int v, int face) const {
     const Triangle& own = a.mesh.triangles[static_cast<std::size_t>(face)];
@@ -80,7 +80,7 @@ struct Both {
     const double h = (p - t.v[0]).dot(t.normal);
     if (!in_range(std::abs(h)) || !over_prism(p, t, kOnEdge_m)) return;
     if (!nearest_at(b.mesh, v, -h * t.normal, std::abs(h))) return;
-    add(layer2::over_face(p, t, h, false), face, b.mesh.triangle_against(v, t.normal));
+    add(layer2::over_face(p, t, h, false), face, b.mesh.triangle_across(v, t.normal));
   }
   void vertex_and_edge(int v, int edge) const {
     const MeshFeatures::Edge& e = b.mesh.edges[static_cast<std::size_t>(edge)];

@@ -160,7 +160,7 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor
   double done_m = -1;
   for (double step_m = std::min(reach_m, kFirstStep_m);; step_m = std::min(reach_m, 2 * step_m)) {
     if (done_m >= 0) pairs.clear();
-    features_.find(a.features, b.features, b_from_a, std::max(near_m, done_m), step_m, pairs);
+    features_.find(a.features, b.features, b_from_a, std::max(near_m - kEqual_m, done_m), step_m, pairs);
     list_candidates(a, b, done_m, step_m, pairs);
     if (!report(a, b, visitor, pairs) || step_m >= reach_m) return;
     done_m = step_m;
