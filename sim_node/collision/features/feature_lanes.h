@@ -7,12 +7,14 @@
 namespace tactus::sim::features {
 namespace {
 
-// A connection may deviate from the allowed directions by this much, rad; see kSlack_rad.
+// A connection may deviate from the allowed directions by this much, rad; see kDirectionSlack_rad.
 constexpr float kOutward = 0.02f;
 // Squared sine below which the common perpendicular of two edges is unreliable in float.
 constexpr float kNearlyParallelEdges = 1e-4f;
 
-inline __attribute__((always_inline)) void least(const Floats& x, const Floats& y, Floats& out) { out = x < y ? x : y; }
+inline __attribute__((always_inline)) void least(const Floats& x, const Floats& y, Floats& out) {
+  out = x < y ? x : y;
+}
 
 inline __attribute__((always_inline)) unsigned used_lanes(int count, int first) {
   return (1u << (count - first < kStep ? count - first : kStep)) - 1;
@@ -77,8 +79,8 @@ inline __attribute__((always_inline)) void cross(const Floats* a, const float* b
   }
 }
 
-inline __attribute__((always_inline)) unsigned cross_from(const FeatureNode& n, const EdgeLanes& e, const EdgeQuery& q,
-                                                          int first) {
+inline __attribute__((always_inline)) unsigned cross_from(const FeatureNode& n, const EdgeLanes& e,
+                                                          const EdgeQuery& q, int first) {
   Floats d[3], u[3], normal[3], x[3], half, squared, sine, apart_by, limit, t;
   for (int k = 0; k < 3; ++k) {
     load(n.centre[k] + first, d[k]);
@@ -131,7 +133,8 @@ inline __attribute__((always_inline)) unsigned reach(const FeatureNode& n, const
   return hit;
 }
 
-inline __attribute__((always_inline)) unsigned cross_edges(const FeatureNode& n, const EdgeLanes& e, const EdgeQuery& q) {
+inline __attribute__((always_inline)) unsigned cross_edges(const FeatureNode& n, const EdgeLanes& e,
+                                                           const EdgeQuery& q) {
   unsigned hit = cross_from(n, e, q, 0);
   for (int first = kStep; first < n.count; first += kStep) hit |= cross_from(n, e, q, first) << first;
   return hit;

@@ -1,6 +1,6 @@
-// Eight boxes of features (faces, edges or vertices) in structure-of-arrays layout, with the directions in which their
-// nearest points can lie, for one test. Plain data: compiled for several instruction sets, so it must not include
-// anything that the linker could share between them.
+// Eight boxes of features (faces, edges or vertices) in structure-of-arrays layout, with the directions in which
+// their nearest points can lie, for one test. Plain data: compiled for several instruction sets, so it must not
+// include anything that the linker could share between them.
 #pragma once
 
 #include "sim_node/collision/layers/wide_node.h"
@@ -16,10 +16,10 @@ struct alignas(64) FeatureNode {
   float per_rise[kLanes];    // inverse of the least component along axis 2; 1e9 where that is below a tenth
   float cone[3][kLanes];     // axis of the double cone that contains the directions, unit
   float cosine[kLanes], sine[kLanes];  // of its half angle; 0 and 1: all directions
-  float size[kLanes];        // norm of the half extents
-  int child[kLanes];         // a node, or ~feature
-  int count;                 // lanes in use, from the first
-  unsigned inner;            // bit i is set when child i is a node
+  float size[kLanes];                  // norm of the half extents
+  int child[kLanes];                   // a node, or ~feature
+  int count;                           // lanes in use, from the first
+  unsigned inner;                      // bit i is set when child i is a node
 };
 
 // A point, a segment or a ball around several of them in the frame of the other tree.
@@ -33,7 +33,8 @@ struct FeatureQuery {
   float cosine, sine;
 };
 
-// Bit i is set when a feature in box i may lie within reach of the query, in a direction that both allow. Conservative.
+// Bit i is set when a feature in box i may lie within reach of the query, in a direction that both allow.
+// Conservative.
 using ReachTest = unsigned (*)(const FeatureNode&, const FeatureQuery&);
 unsigned reach_baseline(const FeatureNode&, const FeatureQuery&);
 unsigned reach_avx2(const FeatureNode&, const FeatureQuery&);
@@ -52,8 +53,8 @@ struct EdgeQuery {
   float reach, slack;
 };
 
-// Bit i is set when the lines of the two edges may be nearest between their ends, within reach, and on the outer side
-// of all faces. Nearly parallel edges pass. Conservative.
+// Bit i is set when the lines of the two edges may be nearest between their ends, within reach, and on the outer
+// side of all faces. Nearly parallel edges pass. Conservative.
 using EdgeTest = unsigned (*)(const FeatureNode&, const EdgeLanes&, const EdgeQuery&);
 unsigned cross_baseline(const FeatureNode&, const EdgeLanes&, const EdgeQuery&);
 unsigned cross_avx2(const FeatureNode&, const EdgeLanes&, const EdgeQuery&);

@@ -26,8 +26,8 @@ FeatureSearch::FeatureSearch(Isa isa)
              : isa == Isa::kAvx2 ? cross_avx2
                                  : cross_baseline) {}
 
-bool FeatureSearch::start(const FeatureTree& from, const FeatureTree& to, const Isometry3d& to_from, double reach_m,
-                          std::vector<FeaturePair>& out) {
+bool FeatureSearch::start(const FeatureTree& from, const FeatureTree& to, const Isometry3d& to_from,
+                          double reach_m, std::vector<FeaturePair>& out) {
   out.clear();
   if (from.empty() || to.empty()) return false;
   const Eigen::Vector3d shift = to_from * from.origin() - to.origin();

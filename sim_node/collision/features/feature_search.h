@@ -13,19 +13,20 @@ struct FeaturePair {
   int from, to;
 };
 
-// Descends one tree; each of its parts takes over the list of the parts of the other tree that its parent may meet.
+// Descends one tree; each of its parts takes over the list of the parts of the other tree that its parent may
+// meet.
 class FeatureSearch {
  public:
   explicit FeatureSearch(Isa isa);
-  // Writes (feature of `from`, feature of `to`) into `out`, after clearing it: all pairs within reach in directions that
-  // both allow, and some others. to_from: maps the frame of `from` to that of `to`. Deterministic. Real-time safe once
-  // the lists have grown.
+  // Writes (feature of `from`, feature of `to`) into `out`, after clearing it: all pairs within reach in
+  // directions that both allow, and some others. to_from: maps the frame of `from` to that of `to`. Deterministic.
+  // Real-time safe once the lists have grown.
   void find(const FeatureTree& from, const FeatureTree& to, const Eigen::Isometry3d& to_from, double reach_m,
             std::vector<FeaturePair>& out);
-  // The same for edges. Leaves out pairs whose lines are not nearest to each other between their ends on the outer sides
-  // of their faces.
-  void find_edges(const FeatureTrees& from, const FeatureTrees& to, const Eigen::Isometry3d& to_from, double reach_m,
-                  std::vector<FeaturePair>& out);
+  // The same for edges. Leaves out pairs whose lines are not nearest to each other between their ends on the outer
+  // sides of their faces.
+  void find_edges(const FeatureTrees& from, const FeatureTrees& to, const Eigen::Isometry3d& to_from,
+                  double reach_m, std::vector<FeaturePair>& out);
 
  private:
   struct Entry {

@@ -33,8 +33,8 @@ DirectionCone around(const std::vector<int>& below, const std::vector<DirectionC
   return direction_cone(axis, widest_rad + kConeRounding);
 }
 
-// Boxes of segments and points, from which ObbTree makes a tree. A point becomes a segment of a nanometre, because the
-// axes of a box follow from the extent of its parts.
+// Boxes of segments and points, from which ObbTree makes a tree. A point becomes a segment of a nanometre, because
+// the axes of a box follow from the extent of its parts.
 ObbTree segments(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to) {
   std::vector<Vector3d> corners;
   std::vector<int> indices;
@@ -61,7 +61,8 @@ EdgeLanes lanes_of(const FeatureNode& node, const MeshFeatures& mesh) {
   return lanes;
 }
 
-FeatureTree points(const MeshFeatures& mesh, const std::vector<int>& numbers, const std::vector<DirectionCone>& cones) {
+FeatureTree points(const MeshFeatures& mesh, const std::vector<int>& numbers,
+                   const std::vector<DirectionCone>& cones) {
   std::vector<Vector3d> from, to;
   for (const int v : numbers) {
     from.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
@@ -72,7 +73,8 @@ FeatureTree points(const MeshFeatures& mesh, const std::vector<int>& numbers, co
 
 }  // namespace
 
-FeatureTree::FeatureTree(const ObbTree& boxes, const std::vector<int>& features, const std::vector<DirectionCone>& cones)
+FeatureTree::FeatureTree(const ObbTree& boxes, const std::vector<int>& features,
+                         const std::vector<DirectionCone>& cones)
     : nodes_(boxes.nodes().size()), origin_(boxes.origin()), radius_m_(boxes.radius_m()) {
   if (boxes.empty()) nodes_.clear();
   if (!nodes_.empty()) gather(boxes, 0, features, cones);
@@ -138,7 +140,8 @@ FeatureTrees::FeatureTrees(const ObbTree& tree) : mesh(tree.triangles()) {
   std::vector<DirectionCone> cones;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     numbers.push_back(static_cast<int>(i));
-    cones.push_back(direction_cone(mesh.triangles[i].normal, mesh.triangles[i].normal.isZero() ? 4 : kFaceSlack_rad));
+    cones.push_back(
+        direction_cone(mesh.triangles[i].normal, mesh.triangles[i].normal.isZero() ? 4 : kFaceSlack_rad));
   }
   faces = FeatureTree(tree, numbers, cones);
 

@@ -15,7 +15,8 @@ namespace tactus::sim::features {
 class FeatureTree {
  public:
   FeatureTree() = default;
-  // boxes: one triangle per feature, which may be a segment or a point. features, cones: number and directions of each.
+  // boxes: one triangle per feature, which may be a segment or a point. features, cones: number and directions of
+  // each.
   FeatureTree(const ObbTree& boxes, const std::vector<int>& features, const std::vector<DirectionCone>& cones);
 
   // The first node holds one box around all features. Centres are relative to origin().
@@ -25,7 +26,8 @@ class FeatureTree {
   bool empty() const { return nodes_.empty(); }
 
  private:
-  void set_directions(std::size_t node, int lane, const std::vector<int>& below, const std::vector<DirectionCone>& cones);
+  void set_directions(std::size_t node, int lane, const std::vector<int>& below,
+                      const std::vector<DirectionCone>& cones);
   std::vector<int> gather(const ObbTree& boxes, std::size_t node, const std::vector<int>& features,
                           const std::vector<DirectionCone>& cones);
 
@@ -38,10 +40,10 @@ class FeatureTree {
 struct FeatureTrees {
   explicit FeatureTrees(const ObbTree& mesh);
   MeshFeatures mesh;
-  FeatureTree faces;     // directions: along the normal
+  FeatureTree faces;  // directions: along the normal
   FeatureTree edges;
-  FeatureTree vertices;  // of all vertices, in all directions
-  FeatureTree peaks;     // of the vertices that can be nearest in some direction
+  FeatureTree vertices;               // of all vertices, in all directions
+  FeatureTree peaks;                  // of the vertices that can be nearest in some direction
   std::vector<EdgeLanes> edge_lanes;  // by node of `edges`
 };
 

@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 
 // Wider cones allow all directions, rad.
 constexpr double kWidestCone_rad = 1.4;
-// Reserve for the bulge of the border of a vertex's region between its corners, rad. It is of the order of kSlack_rad
-// times the square of a corner's distance.
+// Reserve for the bulge of the border of a vertex's region between its corners, rad. It is of the order of
+// kDirectionSlack_rad times the square of a corner's distance.
 constexpr double kBulge_rad = 0.01;
 
 double least_height_m(const Triangle& t) {
@@ -35,13 +35,13 @@ std::vector<Vector3d> region_corners(std::span<const MeshFeatures::Neighbour> ar
       const double cosine = x.dot(y), sine = across.norm();
       collinear = collinear && std::abs(cosine) > 0.999;
       if (sine < 1e-6) continue;
-      const Vector3d within = kSlack_rad / (1 + cosine) * (x + y);
+      const Vector3d within = kDirectionSlack_rad / (1 + cosine) * (x + y);
       const double rest = 1 - within.squaredNorm();
       if (rest < 0) continue;
       for (const double side : {-1.0, 1.0}) {
         const Vector3d corner = within + side * std::sqrt(rest) / sine * across;
         if (std::all_of(around.begin(), around.end(),
-                        [&](const auto& n) { return n.along.dot(corner) <= kSlack_rad + 1e-9; }))
+                        [&](const auto& n) { return n.along.dot(corner) <= kDirectionSlack_rad + 1e-9; }))
           corners.push_back(corner);
       }
     }
@@ -91,7 +91,11 @@ MeshFeatures::MeshFeatures(const std::vector<Triangle>& of) : triangles(of) {
       const Vector3d along = way / length_m;
       const auto [at, is_new] = edge_of.try_emplace(std::minmax(from, to), edges.size());
       if (is_new)
-        edges.push_back({static_cast<int>(t), static_cast<int>(i), {from, to}, along, length_m,
+        edges.push_back({static_cast<int>(t),
+                         static_cast<int>(i),
+                         {from, to},
+                         along,
+                         length_m,
                          {Vector3d::Zero(), Vector3d::Zero()}});
       if (!limits) continue;
       Edge& e = edges[at->second];
@@ -120,7 +124,9 @@ MeshFeatures::MeshFeatures(const std::vector<Triangle>& of) : triangles(of) {
 
 int MeshFeatures::triangle_across(int vertex, const Vector3d& direction) const {
   const auto v = static_cast<std::size_t>(vertex);
-  const auto facing = [&](int t) { return std::abs(triangles[static_cast<std::size_t>(t)].normal.dot(direction)); };
+  const auto facing = [&](int t) {
+    return std::abs(triangles[static_cast<std::size_t>(t)].normal.dot(direction));
+  };
   int best = triangles_at[first_triangle[v]];
   for (std::size_t i = first_triangle[v] + 1; i < first_triangle[v + 1]; ++i)
     if (facing(triangles_at[i]) < facing(best)) best = triangles_at[i];
@@ -133,7 +139,7 @@ DirectionCone MeshFeatures::cone_of_edge(int edge) const {
   const Vector3d in = e.inward[0] + e.inward[1];
   const double half_rad = (M_PI - angle_between(e.inward[0], e.inward[1])) / 2;
   const Vector3d axis = in.norm() > 1e-3 ? Vector3d(-in.normalized()) : Vector3d(e.inward[0].cross(e.along));
-  return direction_cone(axis.normalized(), half_rad + kSlack_rad + 1e-3);
+  return direction_cone(axis.normalized(), half_rad + kDirectionSlack_rad + 1e-3);
 }
 
 DirectionCone MeshFeatures::cone_of_vertex(int vertex) const {

@@ -1,5 +1,5 @@
-// Faces, edges and vertices of a mesh, each one once, with what limits the directions to the nearest point of another
-// surface. Pure.
+// Faces, edges and vertices of a mesh, each one once, with what limits the directions to the nearest point of
+// another surface. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +12,9 @@
 
 namespace tactus::sim::features {
 
-// A point nearest only to within a millionth of its distance deviates from the allowed directions by at most this, rad:
-// for distances from kNear_m to 0.95 m, and faces with at least kMinHeight_m.
-inline constexpr double kSlack_rad = 0.02;
+// A point nearest only to within a millionth of its distance deviates from the allowed directions by at most this,
+// rad: for distances from kNear_m to 0.95 m, and faces with at least kMinHeight_m.
+inline constexpr double kDirectionSlack_rad = 0.02;
 // Nearer features are not filtered by direction, m. From (1 - cos 0.02) * 1e-5 m > kOn_m of gaps/mesh_pair.cpp.
 inline constexpr double kNear_m = 1e-5;
 // Smaller faces and shorter edges limit no direction, m.
@@ -34,11 +34,11 @@ struct MeshFeatures {
   explicit MeshFeatures(const std::vector<Triangle>& triangles);
 
   struct Edge {
-    int triangle, side;          // the edge from v[side] to the next vertex of that triangle
-    std::array<int, 2> ends;     // vertices
-    Eigen::Vector3d along;       // unit
+    int triangle, side;       // the edge from v[side] to the next vertex of that triangle
+    std::array<int, 2> ends;  // vertices
+    Eigen::Vector3d along;    // unit
     double length_m;
-    Eigen::Vector3d inward[2];   // within two of its faces, unit; 0: no face
+    Eigen::Vector3d inward[2];  // within two of its faces, unit; 0: no face
     bool leaves(const Eigen::Vector3d& direction, double slack) const {
       return inward[0].dot(direction) <= slack && inward[1].dot(direction) <= slack;
     }

@@ -10,7 +10,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using features::FeaturePair;
 using features::FeatureTrees;
-using features::kSlack_rad;
+using features::kDirectionSlack_rad;
 using features::MeshFeatures;
 
 // A vertex this far outside a face is over its edge, m: a million times the rounding of a metre.
@@ -50,7 +50,8 @@ struct Both {
   }
   // Adds the pair of two points if both features allow its direction.
   template <class Leaves>
-  void add_points(const Vector3d& on_a, const Vector3d& on_b, int triangle_a, int triangle_b, Leaves&& leaves) const {
+  void add_points(const Vector3d& on_a, const Vector3d& on_b, int triangle_a, int triangle_b,
+                  Leaves&& leaves) const {
     PointPair p;
     p.on_a_m = on_a, p.on_b_m = on_b;
     const Vector3d way = on_b - on_a;
@@ -88,7 +89,9 @@ struct Both {
     const double along = (p - u).dot(e.along);
     if (along < -kOnEdge_m || along > e.length_m + kOnEdge_m) return;
     add_points(p, u + std::clamp(along, 0.0, e.length_m) * e.along, triangle_of(a.mesh, v), e.triangle,
-               [&](const Vector3d& d) { return e.leaves(-d, kSlack_rad) && a.mesh.leaves(v, in_a(d), kSlack_rad); });
+               [&](const Vector3d& d) {
+                 return e.leaves(-d, kDirectionSlack_rad) && a.mesh.leaves(v, in_a(d), kDirectionSlack_rad);
+               });
   }
   void edge_and_vertex(int v, int edge) const {
     const MeshFeatures::Edge& e = a.mesh.edges[static_cast<std::size_t>(edge)];
@@ -96,12 +99,15 @@ struct Both {
     const double along = (p - u).dot(way);
     if (along < -kOnEdge_m || along > e.length_m + kOnEdge_m) return;
     add_points(u + std::clamp(along, 0.0, e.length_m) * way, p, e.triangle, triangle_of(b.mesh, v),
-               [&](const Vector3d& d) { return e.leaves(in_a(d), kSlack_rad) && b.mesh.leaves(v, -d, kSlack_rad); });
+               [&](const Vector3d& d) {
+                 return e.leaves(in_a(d), kDirectionSlack_rad) && b.mesh.leaves(v, -d, kDirectionSlack_rad);
+               });
   }
   void two_vertices(int of_a, int of_b) const {
     add_points(vertex_a(of_a), vertex_b(of_b), triangle_of(a.mesh, of_a), triangle_of(b.mesh, of_b),
                [&](const Vector3d& d) {
-                 return a.mesh.leaves(of_a, in_a(d), kSlack_rad) && b.mesh.leaves(of_b, -d, kSlack_rad);
+                 return a.mesh.leaves(of_a, in_a(d), kDirectionSlack_rad) &&
+                        b.mesh.leaves(of_b, -d, kDirectionSlack_rad);
                });
   }
   void two_edges(int of_a, int of_b) const {
@@ -109,10 +115,11 @@ struct Both {
                              &y = b.mesh.edges[static_cast<std::size_t>(of_b)];
     Triangle t;
     for (int i = 0; i < 3; ++i) t.v[i] = b_from_a * a.mesh.triangles[static_cast<std::size_t>(x.triangle)].v[i];
-    layer2::between_edges(t, static_cast<std::size_t>(x.side), b.mesh.triangles[static_cast<std::size_t>(y.triangle)],
-                          static_cast<std::size_t>(y.side), reach_m, [&](const PointPair& p) {
-                            if (p.gap_m > above_m && x.leaves(in_a(p.normal), kSlack_rad) &&
-                                y.leaves(-p.normal, kSlack_rad))
+    layer2::between_edges(t, static_cast<std::size_t>(x.side),
+                          b.mesh.triangles[static_cast<std::size_t>(y.triangle)], static_cast<std::size_t>(y.side),
+                          reach_m, [&](const PointPair& p) {
+                            if (p.gap_m > above_m && x.leaves(in_a(p.normal), kDirectionSlack_rad) &&
+                                y.leaves(-p.normal, kDirectionSlack_rad))
                               add(p, x.triangle, y.triangle);
                           });
   }
@@ -126,8 +133,8 @@ Triangle in_frame_of_b(const Triangle& t, const Isometry3d& b_from_a) {
   return m;
 }
 
-void FeatureContacts::find(const FeatureTrees& a, const FeatureTrees& b, const Isometry3d& b_from_a, double above_m,
-                           double reach_m, std::vector<PointPair>& out) {
+void FeatureContacts::find(const FeatureTrees& a, const FeatureTrees& b, const Isometry3d& b_from_a,
+                           double above_m, double reach_m, std::vector<PointPair>& out) {
   const Isometry3d a_from_b = b_from_a.inverse(Eigen::Isometry);
   const Both both{a, b, b_from_a, above_m, reach_m, out};
   search_.find(a.vertices, b.faces, b_from_a, reach_m, found_);

@@ -131,8 +131,9 @@ void MeshNearest::list_candidates(const Mesh& a, const Mesh& b, double from_m, d
   });
 }
 
-// Returns whether the search goes on.
-bool MeshNearest::report(const Mesh& a, const Mesh& b, PairVisitor& visitor, const std::vector<PointPair>& pairs) const {
+// Returns whether the search continues.
+bool MeshNearest::report(const Mesh& a, const Mesh& b, PairVisitor& visitor,
+                         const std::vector<PointPair>& pairs) const {
   for (const Candidate& c : candidates_) {
     const PointPair& p = pairs[c.pair];
     if (visitor.is_redundant(p)) continue;
@@ -148,8 +149,8 @@ void MeshNearest::find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor
                        std::vector<PointPair>& pairs) {
   const Isometry3d b_from_a = b.pose.inverse(Eigen::Isometry) * a.pose;
   pairs.clear();
-  // Triangle by triangle where orient() decides, so that both searches decide on the same triangles. The first step
-  // covers that distance, because an overlap counts as nearer than all other pairs.
+  // Triangle by triangle where orient() decides, so that both searches decide on the same triangles. The first
+  // step covers that distance, because an overlap counts as nearer than all other pairs.
   double near_m = std::min(reach_m, kMaxOrientedUnpierced_m);
   find_near(a, b, b_from_a, near_m, pairs);
   if (pierced_) {

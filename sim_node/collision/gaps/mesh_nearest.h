@@ -24,12 +24,12 @@ class MeshNearest {
     const Eigen::Isometry3d& pose;
   };
   explicit MeshNearest(Isa isa) : facing_(isa), features_(isa) {}
-  // Reports the pairs of the three layers that satisfy is_contact(), to within rounding, without those that are over a
-  // face only by the edges of both meshes and are no local minimum of the distance. Pairs whose gaps are equal to within
-  // a nanometre come in the order of their positions, which does not depend on the order of the triangles. Searches in
-  // steps of the distance and stops with the visitor, so that the cost follows from the nearest pairs, not from the
-  // reach. Calls is_contact() only for pairs that `visitor` does not report as redundant. `scratch` is working memory.
-  // Deterministic. Real-time safe once the lists have grown.
+  // Reports the pairs of the three layers that satisfy is_contact(), to within rounding, without those that are
+  // over a face only by the edges of both meshes and are no local minimum of the distance. Pairs whose gaps are
+  // equal to within a nanometre come in the order of their positions, which does not depend on the order of the
+  // triangles. Searches in steps of the distance and stops with the visitor, so that the cost follows from the
+  // nearest pairs, not from the reach. Calls is_contact() only for pairs that `visitor` does not report as
+  // redundant. `scratch` is working memory. Deterministic. Real-time safe once the lists have grown.
   void find(const Mesh& a, const Mesh& b, double reach_m, PairVisitor& visitor, std::vector<PointPair>& scratch);
 
  private:

@@ -11,15 +11,15 @@
 
 namespace tactus::sim::test {
 
-class OwedPairs {
+class ExpectedPairs {
  public:
-  OwedPairs(const Soup& a, const Soup& b)
+  ExpectedPairs(const Soup& a, const Soup& b)
       : a_(a), b_(b), tree_a_(a.vertices, a.indices), tree_b_(b.vertices, b.indices) {}
 
-  // Whether the pair, with b in the world frame, is a local minimum of the distance, a vertex over a face without a
-  // much nearer point beside it, or an overlap. The other contacts of the search over all triangles are edges over faces:
-  // they lie between vertices over the same face.
-  bool owed(const PointPair& p, const Eigen::Isometry3d& pose_a) const {
+  // Whether the pair, with b in the world frame, is a local minimum of the distance, a vertex over a face without
+  // a much nearer point beside it, or an overlap. The other contacts of the search over all triangles are edges
+  // over faces: they lie between vertices over the same face.
+  bool expected(const PointPair& p, const Eigen::Isometry3d& pose_a) const {
     if (p.gap_m <= 0) return true;
     const Eigen::Isometry3d back = pose_a.inverse(Eigen::Isometry);
     const Eigen::Vector3d in_a = back * p.on_a_m;
