@@ -28,6 +28,7 @@ struct GapShape {
   std::shared_ptr<const TriangleTree> tree;
   std::shared_ptr<const ContactMesh> layers;
   std::shared_ptr<const gaps::NormalCones> cones = nullptr;
+  std::shared_ptr<const features::FeatureTrees> features = nullptr;
 };
 
 class GapsDetector : public Detector, public NearestFirstDetector {
@@ -90,6 +91,9 @@ class GapsDetector : public Detector, public NearestFirstDetector {
       auto& cones = cones_[s->layers.get()];
       if (!cones) cones = std::make_shared<const gaps::NormalCones>(s->layers->tree);
       s->cones = cones;
+      auto& trees = features_[s->layers.get()];
+      if (!trees) trees = std::make_shared<const features::FeatureTrees>(s->layers->tree);
+      s->features = trees;
     }
   }
 
@@ -97,8 +101,8 @@ class GapsDetector : public Detector, public NearestFirstDetector {
                      PairVisitor& visitor, std::vector<PointPair>& scratch) override {
     const GapShape &sa = shapes_[static_cast<std::size_t>(a)], &sb = shapes_[static_cast<std::size_t>(b)];
     if (!sa.cones || !sb.cones) return false;
-    nearest_.find({*sa.tree, *sa.layers, *sa.cones, pose_a}, {*sb.tree, *sb.layers, *sb.cones, pose_b}, reach_m,
-                  visitor, scratch);
+    nearest_.find({*sa.tree, *sa.layers, *sa.cones, *sa.features, pose_a},
+                  {*sb.tree, *sb.layers, *sb.cones, *sb.features, pose_b}, reach_m, visitor, scratch);
     return true;
   }
 
@@ -188,7 +192,9 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   gaps::MeshNearest nearest_;
   bool default_modes_;  // false when another mode of layers 2 and 3 is selected for comparison
   std::vector<GapShape> shapes_;
-  std::map<const ContactMesh*, std::shared_ptr<const gaps::NormalCones>> cones_;  // one per mesh, like its tree
+  // One per mesh, like its tree.
+  std::map<const ContactMesh*, std::shared_ptr<const gaps::NormalCones>> cones_;
+  std::map<const ContactMesh*, std::shared_ptr<const features::FeatureTrees>> features_;
   std::vector<SurfacePlane> planes_;
   MeshContactResult found_;
 };

@@ -21,7 +21,7 @@ constexpr double kOn_m = 1e-9;
 // Depth up to which a vertex behind a face that faces it is an overlap: where an edge passes through a face, and where
 // none does, as for boxes of equal size on each other, m. Design values: the overlap of a scene that is placed by eye;
 // far less than the thinnest walls.
-constexpr double kDeepest_m = kMaxOriented_m, kDeepestUnpierced_m = 5e-5;
+constexpr double kDeepest_m = kMaxOriented_m, kDeepestUnpierced_m = kMaxOrientedUnpierced_m;
 // Triangles face each other when their normals are opposite within 8 degrees. Cosine.
 constexpr double kFacing = -0.99;
 // A touching pair separates two triangles when no corner is beyond its plane by more than this angle, rad.

@@ -50,6 +50,8 @@ void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair);
 
 // Gap above which orient() changes nothing, m.
 inline constexpr double kMaxOriented_m = 2e-3;
+// The same where no edge passes through a face, m.
+inline constexpr double kMaxOrientedUnpierced_m = 5e-5;
 // Corrects a pair of two triangles, world frame, whose normals point out of their bodies. A vertex slightly behind a face
 // that faces it is an overlap, whose normal points the other way (pierced: an edge of the bodies passes through a face,
 // so that deeper ones are overlaps too). Where surfaces touch, returns false for a pair whose normal does not separate

@@ -3,45 +3,10 @@
 // operations are fused.
 #pragma once
 
-#if defined(__SSE2__)
-#include <immintrin.h>
-#endif
-
-#include "sim_node/collision/layers/wide_node.h"
+#include "sim_node/collision/layers/lanes.h"
 
 namespace tactus::sim {
 namespace {
-
-// Number of lanes that a register holds.
-#if defined(__AVX__)
-constexpr int kStep = 8;
-#else
-constexpr int kStep = 4;
-#endif
-static_assert(kLanes % kStep == 0);
-
-typedef float Floats __attribute__((vector_size(4 * kStep), may_alias));
-typedef int Ints __attribute__((vector_size(4 * kStep), may_alias));
-
-inline __attribute__((always_inline)) void load(const float* from, Floats& to) {
-  to = *reinterpret_cast<const Floats*>(from);
-}
-
-inline __attribute__((always_inline)) void magnitude(const Floats& x, Floats& out) {
-  out = reinterpret_cast<const Floats&>(static_cast<const Ints&>(reinterpret_cast<const Ints&>(x) & 0x7fffffff));
-}
-
-inline __attribute__((always_inline)) unsigned signs(const Ints& m) {
-#if defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(m)));
-#elif defined(__SSE2__)
-  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<const __m128&>(m)));
-#else
-  unsigned bits = 0;
-  for (int i = 0; i < kStep; ++i) bits |= (m[i] < 0 ? 1u : 0u) << i;
-  return bits;
-#endif
-}
 
 inline __attribute__((always_inline)) unsigned overlap_from(const WideNode& n, const BoxQuery& q, int first) {
   Floats d[3], t[3], c[3][3], ac[3][3], h[3], at, x;

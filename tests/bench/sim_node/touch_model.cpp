@@ -44,9 +44,8 @@ struct Scene {
 Scene scene_of(const std::string& name, int level, int count, bool moving) {
   Scene s{name, empty_world(), {}, {}};
   const Soup soup = lumpy_sphere(level, 0.05, 1);
-  TriangleMesh mesh{soup.vertices, {}, soup.indices};
-  complete_normals(mesh);
-  s.world.meshes.push_back(mesh);
+  s.world.meshes.push_back({soup.vertices, {}, soup.indices});
+  complete_normals(s.world.meshes.back());
   const int side = static_cast<int>(std::ceil(std::cbrt(count)));
   for (int i = 0; i < count; ++i) {
     const int body = add_body(s.world, "thing", moving ? 1 : 0, Eigen::Matrix3d::Identity(),

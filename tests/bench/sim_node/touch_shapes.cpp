@@ -79,7 +79,7 @@ std::vector<SceneCase> scenes_of(const std::string& folder) {
   std::vector<SceneCase> all;
   for (const int level : {3, 4, 5, 6}) {
     SceneCase s{"lumpy sphere", {mesh_of(lumpy_sphere(level, 0.05, 1))}, {0.09, 0, 0}, {-Vector3d::UnitX()}, true};
-    if (level == 5) s.speeds_m_s = {0, 0.2};
+    if (level >= 5) s.speeds_m_s = {0, 0.2};
     all.push_back(std::move(s));
   }
   all.push_back({"bumpy_sphere.obj", {file("/bumpy_sphere.obj")}, {0.2, 0, 0}, {-Vector3d::UnitX()}, true});
