@@ -18,8 +18,17 @@ printf 'TACTUS_TESTS:BOOL=%s\\n' $tests >build/dev/CMakeCache.txt
 printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nCMAKE_CACHEFILE_DIR:INTERNAL=%s/build/dev\\n' "$PWD" "$PWD" >>build/dev/CMakeCache.txt
 touch build/dev/build.ninja
 """
+# Compiles the files of $FILES (lines "SECONDS KIND FILE"), and prints them as ninja does; nothing with -n but the same lines.
 NINJA = """#!/bin/sh
-echo "ninja $*" >>"$RECORD"
+case " $* " in *" -n "*) dry=yes ;; *) dry=no; echo "ninja $*" >>"$RECORD" ;; esac
+[ -n "$FILES" ] || { echo 'ninja: no work to do.'; exit 0; }
+echo "ninja: Entering directory \\`build'"
+printf '%s\n' "$FILES" | while read -r seconds text; do
+  case $text in
+    FAILED*) [ $dry = yes ] || { echo "$text"; exit 1; } ;;
+    *) printf '%s\n' "$(printf '%s' "${NINJA_STATUS:-[1/9] }" | sed "s/%e/$seconds/")$text" ;;
+  esac
+done
 """
 MEMORY = "MemTotal: 64000000 kB\nMemAvailable: {kB} kB\n"
 
@@ -34,7 +43,7 @@ class Tree(unittest.TestCase):
         self.write("bin/ninja", NINJA)
         self.tree = self.top / "tree"
         (self.tree / "scripts").mkdir(parents=True)
-        for name in ("build", "build_jobs.sh", "prologue.sh", "removed_variables.txt"):
+        for name in ("build", "build_jobs.sh", "build_progress.sh", "prologue.sh", "removed_variables.txt"):
             shutil.copy(SCRIPTS / name, self.tree / "scripts")
 
     def write(self, name, text):
@@ -87,6 +96,31 @@ class Tests(Tree):
                                      (("sync_test",), ["cmake", "ninja"], True), (("--programs",), ["ninja"], True), ((), ["ninja"], True)):
             self.assertEqual(called, self.build(self.tree, *words)[0], words)
             self.assertEqual(tests, self.has_tests(), words)
+
+
+class Progress(Tree):
+    FILES = ["1.0 Generating a.hpp"] + [f"{10 * n}.500 Building CXX object {n}.o" for n in range(1, 31)] + ["300.9 Linking CXX executable a"]
+
+    def output(self, *files, status=0):
+        environment = {**self.environment(), "FILES": "\n".join(files)}
+        done = subprocess.run([self.tree / "scripts" / "build"], env=environment, check=False, capture_output=True, text=True)
+        self.assertEqual(status, done.returncode, done.stderr)
+        return done.stdout.splitlines()[2:], done.stderr
+
+    def test_each_minute_the_compiled_files_of_all_and_the_remaining_time_are_printed(self):
+        lines, errors = self.output(*self.FILES)
+        self.assertEqual(["build: 6 of 30 files compiled, about 4 min left", "build: 12 of 30 files compiled, about 3 min left",
+                          "build: 18 of 30 files compiled, about 2 min left", "build: 24 of 30 files compiled, about 60 s left",
+                          "build: 30 of 30 files compiled"], lines)
+        self.assertEqual("", errors)
+
+    def test_a_build_of_less_than_a_minute_prints_no_progress(self):
+        self.assertEqual(([], ""), self.output(*self.FILES[:5]))
+        self.assertEqual(([], ""), self.output())
+
+    def test_the_output_of_compilers_goes_to_stderr_and_a_failure_is_reported(self):
+        lines, errors = self.output(*self.FILES[:3], "3.0 FAILED: 3.o", status=1)
+        self.assertEqual(([], "FAILED: 3.o\nbuild: the build failed; see above\n"), (lines, errors))
 
 
 class Memory(Tree):

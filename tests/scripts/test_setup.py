@@ -21,12 +21,22 @@ for name; do
 done
 """
 APT = """#!/bin/sh
-case "$*" in *--simulate*) exit 0 ;; *update*) exit 0 ;; esac
+case "$*" in
+  *--simulate*) exit 0 ;;
+  *indextargets*) [ ! -e "$LISTS" ] || echo main; exit 0 ;;
+  *update*) echo update >>"$RECORD"; touch "$LISTS"; exit 0 ;;
+esac
 echo "apt-get offline=$SYSTEMD_OFFLINE" >>"$RECORD"
 seen=no
 for word; do
   case $word in install) seen=yes ;; -*) ;; *) [ $seen = no ] || { echo "$word" >>"$RECORD"; echo "$word" >>"$STATE"; } ;; esac
 done
+"""
+# The package lists of a system without libsdformat-dev; with HAS_ALL=1, of one with it. Without lists, nothing is known.
+APT_CACHE = """#!/bin/sh
+[ -e "$LISTS" ] || exit 100
+for word; do name=$word; done
+[ "$name" != libsdformat-dev ] || [ "$HAS_ALL" = 1 ] || exit 100
 """
 RECORDER = """#!/bin/sh
 echo "${0##*/} $*" >>"$RECORD"
@@ -48,16 +58,17 @@ class Setup(unittest.TestCase):
         self.state, self.record = self.top / "state", self.top / "record"
         self.state.write_text("bash\n", encoding="utf-8")
         (self.top / "bin").mkdir()
-        for name, text in (("dpkg-query", DPKG_QUERY), ("dpkg", DPKG), ("apt-get", APT), ("systemctl", RECORDER), ("update-rc.d", RECORDER), ("sudo", AS_ROOT)):
+        for name, text in (("dpkg-query", DPKG_QUERY), ("dpkg", DPKG), ("apt-get", APT), ("apt-cache", APT_CACHE), ("systemctl", RECORDER), ("update-rc.d", RECORDER), ("sudo", AS_ROOT)):
             path = self.top / "bin" / name
             path.write_text(text, encoding="utf-8")
             path.chmod(0o755)
 
-    def setup(self, *words, status=0):
-        """(lines that the programs recorded, output)."""
+    def setup(self, *words, status=0, has_all="1"):
+        """(lines that the programs recorded, output). has_all: "0" for a system whose package lists have no libsdformat-dev."""
         self.record.write_text("", encoding="utf-8")
         done = subprocess.run([SCRIPTS / "setup", *words], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL,
-                              env={**os.environ, "PATH": f"{self.top / 'bin'}:{os.environ['PATH']}", "STATE": str(self.state), "RECORD": str(self.record)})
+                              env={**os.environ, "PATH": f"{self.top / 'bin'}:{os.environ['PATH']}", "STATE": str(self.state), "RECORD": str(self.record),
+                                   "LISTS": str(self.top / "lists"), "HAS_ALL": has_all})
         self.assertEqual(status, done.returncode, done.stderr)
         return self.record.read_text(encoding="utf-8").splitlines(), done.stdout + done.stderr
 
@@ -73,6 +84,22 @@ class Setup(unittest.TestCase):
         lines, _ = self.setup("--packages", "test")
         self.assertLessEqual({"slurm-wlm", "openssh-server", "catch2", "cmake", "openvpn"}, set(lines))
 
+    def test_a_package_that_this_system_lacks_is_left_out_and_named(self):
+        lines, said = self.setup("--packages", "test", has_all="0")
+        self.assertIn("catch2", lines)
+        self.assertNotIn("libsdformat-dev", lines)
+        self.assertIn("left out, because this system has no such package: libsdformat-dev\n", said)
+        lines, said = self.setup("--packages", "test", has_all="0")
+        self.assertEqual([], lines)
+        self.assertIn("libsdformat-dev", said)
+        self.assertIn("packages for test: all ", self.setup("--check", "test", has_all="0")[1])
+
+    def test_the_package_lists_are_fetched_before_a_package_counts_as_absent(self):
+        lines, said = self.setup("--packages", "test")
+        self.assertIn("libsdformat-dev", lines)
+        self.assertEqual(1, lines.count("update"))
+        self.assertNotIn("no such package", said)
+
     def test_no_service_is_started_or_enabled(self):
         lines, said = self.setup("--packages", "lab")
         self.assertIn("apt-get offline=1", lines)
@@ -87,7 +114,7 @@ class Setup(unittest.TestCase):
 
     def test_the_check_lists_every_group_and_an_unknown_one_is_refused(self):
         _, said = self.setup("--check", status=1)
-        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "docs", "test"):
+        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "docs", "portability", "test"):
             self.assertIn(f"packages for {group}: missing ", said)
         for name in ("servers", "", "build run", "$(touch sprung)"):
             self.assertIn("there is no group", self.setup(name, status=1)[1])
@@ -102,7 +129,7 @@ class Setup(unittest.TestCase):
                 groups.append(words[0].strip("[:]"))
             elif words:
                 self.assertTrue(groups, line)
-                self.assertTrue(len(words) == 1 or words[1] == "|" and len(words) == 3, line)
+                self.assertTrue(len(words) == 1 or words[1:] == ["?"] or words[1] == "|" and len(words) == 3, line)
                 self.assertNotIn((groups[-1], words[0]), named)
                 named.add((groups[-1], words[0]))
 

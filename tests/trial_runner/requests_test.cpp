@@ -7,7 +7,7 @@
 
 using namespace tactus;
 using namespace tactus::trial_runner;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 TEST_CASE("Each kind of request is parsed") {
   CHECK(std::get<ProfileRequest>(parse_request(R"({"profile": "<profile/>"})")).text == "<profile/>");

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 using namespace tactus::visual;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 TEST_CASE("The files of the default settings and the shipped rooms are accepted") {
   CHECK_NOTHROW(check_named_files({}));

@@ -48,7 +48,8 @@ map_def_t read_map(const LoadContext& context, const sdf::Element& element) {
   map.tag = attributes.required_text("from");
   map.setting = attributes.required_text("to");
   split(context, element, map.tag, "from");
-  const sync::SettingRow& row = row_of(context, element, split(context, element, map.setting, "to"));
+  const auto to = split(context, element, map.setting, "to");
+  const sync::SettingRow& row = row_of(context, element, to);
   map.gain = attributes.quantity("gain", "1", -kMax, kMax).value_or(1);
   const std::string unit = std::string_view(row.unit) == "count" ? "1" : row.unit;
   const double initial = sync::parse_quantity(row.initial, unit);

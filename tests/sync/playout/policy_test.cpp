@@ -6,7 +6,7 @@
 #include "tests/times.h"
 
 using namespace tactus::sync;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using tactus::test::kMillisecond;
 
 namespace {
