@@ -10,7 +10,7 @@ using namespace tactus::sim;
 
 namespace {
 
-struct Random {
+struct DrawnSpheres {
   std::mt19937 random{7};
   double between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); }
   Eigen::Vector3d point(double size) { return {between(-size, size), between(-size, size), between(-size, size)}; }
@@ -34,7 +34,7 @@ constexpr double kHorizon_s = 0.017;
 }  // namespace
 
 TEST_CASE("The closest approach of two linear motions matches a fine sampling of time") {
-  Random c;
+  DrawnSpheres c;
   for (int round = 0; round < 300; ++round) {
     const SweptSphere a = c.sphere(), b = c.sphere();
     double least = 1e9;
@@ -48,7 +48,7 @@ TEST_CASE("The closest approach of two linear motions matches a fine sampling of
 }
 
 TEST_CASE("The first contact time of two linear motions matches a fine sampling of time, if there is one") {
-  Random c;
+  DrawnSpheres c;
   int met = 0;
   for (int round = 0; round < 1000; ++round) {
     const SweptSphere a = c.sphere(), b = c.sphere();
@@ -68,7 +68,7 @@ TEST_CASE("The first contact time of two linear motions matches a fine sampling 
 
 TEST_CASE(
     "The distance of two capsule axes matches a fine sampling and never exceeds that of the motions") {
-  Random c;
+  DrawnSpheres c;
   for (int round = 0; round < 100; ++round) {
     SweptSphere a = c.sphere(), b = c.sphere();
     if (round % 4 == 0) b.velocity_m_s = a.velocity_m_s * c.between(-2, 2);  // parallel
@@ -86,7 +86,7 @@ TEST_CASE(
 }
 
 TEST_CASE("A grid finds exactly the boxes that overlap the query") {
-  Random c;
+  DrawnSpheres c;
   const double spread = GENERATE(0.5, 50.0, 1e7);
   std::vector<Bounds> boxes;
   for (int i = 0; i < 500; ++i) {
