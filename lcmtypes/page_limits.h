@@ -18,6 +18,9 @@ inline constexpr int kMaxEventPages = 64;
 inline constexpr int kMaxReportPages = 512;
 // DEGRADATION: 64 kB of text, 1,200 bytes a page.
 inline constexpr int kMaxProfilePages = 55;
+// QUESTION: 600 characters and nine choices of 40 have at most 3,885 bytes; page 0 has room for 500 of them, each other page for
+// at least 1,100, since a choice of 165 bytes is not divided.
+inline constexpr int kMaxQuestionPages = 8;
 // SCENE_MANIFEST: 512 assets, twelve a page, need 43 pages.
 inline constexpr int kMaxManifestPages = 64;
 // ASSET_CHUNK: 64 MiB, 1,024 bytes a chunk.

@@ -9,6 +9,7 @@
 #include <tactus/tag_request_t.hpp>
 #include <tactus/tag_values_t.hpp>
 
+#include "lcmtypes/page_limits.h"
 #include "lcmtypes/plausible.h"
 #include "lcmtypes/utf8.h"
 #include "lcmtypes/valid.h"
@@ -48,8 +49,11 @@ bool valid(const question_t& m) {
   const auto line = [](const std::string& l, std::size_t most) { return is_text_line(l) && character_count(l) <= most; };
   const auto choice = [&](const std::string& c) { return !c.empty() && line(c, 40); };
   if (!sane(m.header) || m.id <= 0 || !line(m.text, 600) || !between(m.count, 0, 9) ||
-      !std::ranges::all_of(m.choices, choice) || m.trial < 0 || !line(m.condition, 64) || !line(m.progress, 64))
+      !std::ranges::all_of(m.choices, choice) || m.trial < 0 || !line(m.condition, 64) || !line(m.progress, 64) ||
+      !line(m.hint, 64) || !between(m.pages, 0, kMaxQuestionPages) || m.page < 0 || m.page >= std::max(1, m.pages))
     return false;
+  // A part of a question. The whole is validated when all parts have arrived (sync/node/question_pages.h).
+  if (m.pages > 1) return between(m.kind, question_t::READ, question_t::NUMBER) && sane(m.lowest) && sane(m.highest) && sane(m.step);
   const bool no_number = m.lowest == 0 && m.highest == 0 && m.step == 0;
   switch (m.kind) {
     case question_t::NOTHING: return no_number && m.text.empty() && m.count == 0;

@@ -52,7 +52,7 @@ json Answers::to_json(sync::HostTime now) const {
   for (const std::string& c : m->choices) choices.push_back(sync::printable(c));
   return {{"question", question_name(*m)}, {"kind", kind_name(*m)}, {"text", sync::printable(m->text)}, {"choices", choices},
           {"lowest", m->lowest}, {"highest", m->highest}, {"step", m->step}, {"trial", m->trial},
-          {"condition", sync::printable(m->condition)}, {"progress", sync::printable(m->progress)},
+          {"condition", sync::printable(m->condition)}, {"progress", sync::printable(m->progress)}, {"hint", sync::printable(m->hint)},
           {"answered", answers_.find(sync::key_of(*m)) != nullptr}};
 }
 

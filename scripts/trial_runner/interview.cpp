@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "lcmtypes/channels.h"
 #include "lcmtypes/utf8.h"
 #include "lcmtypes/valid.h"
+#include "sync/node/question_pages.h"
 #include "sync/random/keyed_random.h"
 
 namespace tactus::trial_runner {
@@ -18,13 +18,10 @@ void Interview::ask(question_t question) {
   if (!valid(stamped))
     throw std::invalid_argument(
         "the question \"" + shown +
-        "\" cannot be asked: text has at most 600 characters of UTF-8 on one line, a choice 40, condition and progress 64; "
+        "\" cannot be asked: text has at most 600 characters of UTF-8 on one line, a choice 40, condition, progress and hint 64; "
         "2 to 9 choices; a number needs lowest < highest and a step > 0");
-  if (const int bytes = stamped.getEncodedSize(); bytes > static_cast<int>(channels::kMaxMessageBytes))
-    throw std::invalid_argument("the question \"" + shown + "\" cannot be asked: it has " + std::to_string(bytes) +
-                                " bytes with its choices, and a message at most " + std::to_string(channels::kMaxMessageBytes) +
-                                "; shorten it");
   question_ = std::move(question);
+  pages_ = sync::question_pages(question_);
   open_ = question_.kind != question_t::NOTHING;
   first_.reset(), next_.reset();
 }
@@ -53,11 +50,11 @@ std::optional<answer_t> Interview::answer(int choice, double number, const char*
   return a;
 }
 
-std::optional<question_t> Interview::step(sync::HostTime now) {
-  if (next_ && now < *next_) return std::nullopt;
+std::span<const question_t> Interview::step(sync::HostTime now) {
+  if (next_ && now < *next_) return {};
   if (!first_) first_ = now;
   next_ = now + kRepeat;
-  return question_;
+  return pages_;
 }
 
 }  // namespace tactus::trial_runner

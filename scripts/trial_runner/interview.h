@@ -2,8 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <tactus/answer_t.hpp>
 #include <tactus/question_t.hpp>
+#include <vector>
 
 #include "sync/time/time.h"
 
@@ -25,12 +27,13 @@ class Interview {
   // The answer to the current question, from a button of the device or a simulated participant; nullopt: it does not fit the
   // question.
   std::optional<answer_t> answer(int choice, double number, const char* by, sync::HostTime now) const;
-  // The question, when it is due to be published (again).
-  std::optional<question_t> step(sync::HostTime now);
+  // The pages of the question, when it is due to be published (again); else none. Valid until the next call of ask() or accept().
+  std::span<const question_t> step(sync::HostTime now);
 
  private:
   std::uint64_t seed_, count_ = 0;
   question_t question_{};
+  std::vector<question_t> pages_;  // of question_
   bool open_ = false;
   std::optional<sync::HostTime> first_, next_;
 };

@@ -46,6 +46,7 @@ Request question(const json& j) {
                       {"choice", question_t::CHOICE},
                       {"number", question_t::NUMBER}});
   q.text = text_of(j, "text"), q.condition = text_of(j, "condition"), q.progress = text_of(j, "progress");
+  q.hint = text_of(j, "hint");
   if (j.contains("trial")) q.trial = static_cast<std::int32_t>(number_of(j, "trial", 0, 1e9));
   if (const auto at = j.find("choices"); at != j.end()) {
     if (!at->is_array()) refuse("choices is not a list");

@@ -14,7 +14,7 @@ struct ProfileRequest {
   std::string text;
 };
 // {"question": {"kind": "read" | "choice" | "number" | "nothing", "text": , "choices": [], "lowest": , "highest": , "step": ,
-// "trial": , "condition": , "progress": }}: repeats it until it is answered. "nothing": a trial is in progress.
+// "trial": , "condition": , "progress": , "hint": }}: repeats it until it is answered. "nothing": a trial is in progress.
 struct QuestionRequest {
   question_t question;
 };

@@ -97,11 +97,9 @@ class TrialRunner {
              {"at_ns", sync::to_ns(now)},
              {"since_sim_ns", sync::to_ns(enforcement_.profile()->start)},
              {"senses", *senses}});
-    if (auto question = interview_.step(now)) {
-      node_.bus().publish(channels::kQuestion, *question);
-      if (question->kind != question_t::NOTHING && question->id != published_question_)
-        write({{"asked", std::to_string(question->id)}, {"at_ns", sync::to_ns(now)}}), published_question_ = question->id;
-    }
+    for (question_t page : interview_.step(now)) node_.bus().publish(channels::kQuestion, page);
+    if (const question_t& asked = interview_.question(); interview_.is_open() && asked.id != published_question_)
+      write({{"asked", std::to_string(asked.id)}, {"at_ns", sync::to_ns(now)}}), published_question_ = asked.id;
     if (command_ && now >= next_command_)
       node_.bus().publish(channels::kSimCommand, *command_), next_command_ = now + kRepeat;
     if (now >= next_health_) write_modalities(now), next_health_ = now + kHealthPeriod;

@@ -80,7 +80,8 @@ class VertexWelder {
   std::vector<int> next_;                         // in the same cell; -1: none
 };
 
-std::vector<Triangle> welded_triangles(const TriangleMesh& mesh, std::vector<Eigen::Vector3d>& vertices) {
+// source: the number of each triangle in the mesh.
+std::vector<Triangle> welded_triangles(const TriangleMesh& mesh, std::vector<Eigen::Vector3d>& vertices, std::vector<int>& source) {
   VertexWelder welder(mesh);
   std::vector<int> index;
   index.reserve(mesh.vertices.size());
@@ -89,13 +90,15 @@ std::vector<Triangle> welded_triangles(const TriangleMesh& mesh, std::vector<Eig
   std::vector<Triangle> triangles;
   for (Place i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const auto at = [&](Place k) { return index[static_cast<Place>(mesh.indices[i + k])]; };
-    if (at(0) != at(1) && at(1) != at(2) && at(2) != at(0)) triangles.push_back({at(0), at(1), at(2)});
+    if (at(0) == at(1) || at(1) == at(2) || at(2) == at(0)) continue;
+    triangles.push_back({at(0), at(1), at(2)});
+    source.push_back(static_cast<int>(i / 3));
   }
   return triangles;
 }
 
 // Keeps the first of triangles with the same corners: files with two-sided faces name each twice.
-void drop_repeated(std::vector<Triangle>& triangles) {
+std::vector<std::array<int, 2>> drop_repeated(std::vector<Triangle>& triangles, std::vector<int>& source) {
   std::vector<std::pair<Triangle, Place>> sorted;
   for (Place t = 0; t < triangles.size(); ++t) {
     sorted.emplace_back(triangles[t], t);
@@ -103,12 +106,20 @@ void drop_repeated(std::vector<Triangle>& triangles) {
   }
   std::sort(sorted.begin(), sorted.end());
   std::vector<char> keep(triangles.size(), 1);
-  for (Place i = 1; i < sorted.size(); ++i)
-    if (sorted[i].first == sorted[i - 1].first) keep[sorted[i].second] = 0;
+  std::vector<std::array<int, 2>> repeated;
+  for (Place i = 1, first = 0; i < sorted.size(); ++i) {
+    if (sorted[i].first != sorted[first].first) {
+      first = i;
+      continue;
+    }
+    keep[sorted[i].second] = 0;
+    repeated.push_back({source[sorted[i].second], source[sorted[first].second]});
+  }
   Place kept = 0;
   for (Place t = 0; t < triangles.size(); ++t)
-    if (keep[t]) triangles[kept++] = triangles[t];
-  triangles.resize(kept);
+    if (keep[t]) source[kept] = source[t], triangles[kept++] = triangles[t];
+  triangles.resize(kept), source.resize(kept);
+  return repeated;
 }
 
 // One side of a triangle: an edge between two vertices, low < high.
@@ -236,8 +247,9 @@ Groups join_open_patches(const std::vector<Side>& sides, const Patches& patches)
 
 MeshShells shells_of(const TriangleMesh& mesh) {
   MeshShells result;
-  std::vector<Triangle> triangles = welded_triangles(mesh, result.vertices);
-  drop_repeated(triangles);
+  std::vector<int> source;
+  std::vector<Triangle> triangles = welded_triangles(mesh, result.vertices, source);
+  result.repeated = drop_repeated(triangles, source);
   const std::vector<Side> sides = sorted_sides(triangles);
   const Patches patches = find_patches(triangles, sides, result.vertices);
   Groups groups = join_open_patches(sides, patches);
@@ -251,6 +263,7 @@ MeshShells shells_of(const TriangleMesh& mesh) {
     const auto [a, b, c] = triangles[t];
     MeshShell& shell = shell_of(t);
     shell.triangles.push_back(patches.turned[t] ? Triangle{a, c, b} : Triangle{a, b, c});
+    shell.source.push_back(source[t]), shell.turned.push_back(patches.turned[t]);
     shell.one_sided = shell.one_sided || patches.one_sided[static_cast<Place>(patches.of[t])];
     result.turned_triangles += patches.turned[t];
   }

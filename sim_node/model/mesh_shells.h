@@ -17,6 +17,8 @@ struct RimEdge {
 // Triangles that share edges. Without a rim it is a closed surface; with one it is open.
 struct MeshShell {
   std::vector<std::array<int, 3>> triangles;  // indices of welded vertices; neighbours face the same side
+  std::vector<int> source;                    // of each triangle: its number in the mesh
+  std::vector<char> turned;                   // of each triangle: it faced the other side in the mesh
   std::vector<RimEdge> rim;
   bool one_sided = false;  // a Moebius strip or a Klein bottle: it has no inside
 };
@@ -25,6 +27,7 @@ struct MeshShells {
   std::vector<Eigen::Vector3d> vertices;  // m, vertices at one place are one vertex
   std::vector<MeshShell> shells;
   int turned_triangles = 0;  // triangles that faced the other side than their neighbours
+  std::vector<std::array<int, 2>> repeated;  // numbers of a triangle that is in no shell, and of the one whose corners it repeats
 };
 
 // Welds vertices nearer than a millionth of the diagonal (a thousandth, far from the origin of the file), drops repeated

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "sim_node/model/mesh_shells.h"
 
@@ -206,6 +207,65 @@ MeshSolid solid_of(const TriangleMesh& mesh) {
   const auto integral = sum.volume > kNoVolumeShare * area_m2 * box.diagonal().norm() ? integral_of(sum, origin) : std::nullopt;
   if (!integral) return as_box(open ? rims + " and encloses no volume" : "encloses no volume");
   return {*integral, remark};
+}
+
+TurnedTriangles turn_outwards(TriangleMesh& mesh) {
+  const MeshShells shells = shells_of(mesh);
+  TurnedTriangles result;
+  if (std::ranges::any_of(shells.shells, &MeshShell::one_sided)) return result;
+  const Vector3d origin = bounds(mesh, Eigen::Isometry3d::Identity()).center();
+  std::vector<Vector3d> vertices = shells.vertices;
+  for (Vector3d& v : vertices) v -= origin;
+  // Only closed shells have an outside.
+  MeshShells closed;
+  std::vector<ShellSolid> solids;
+  std::vector<int> closed_number(shells.shells.size(), -1);
+  for (Place i = 0; i < shells.shells.size(); ++i) {
+    const ShellSolid solid = solid_of_shell(shells.shells[i], vertices);
+    const double rounding = kNoVolumeShare * solid.area_m2 * solid.box.diagonal().norm();
+    if (solid.cap_area_m2 > kSlitShare * solid.area_m2 || !(std::abs(solid.moments.volume) > rounding)) continue;
+    closed_number[i] = static_cast<int>(solids.size());
+    solids.push_back(solid), closed.shells.push_back(shells.shells[i]);
+  }
+  std::vector<double> factor = factors(closed, vertices, solids);
+  if (factor.empty()) {
+    double sum = 0;
+    for (const ShellSolid& solid : solids) sum += solid.moments.volume;
+    factor.assign(solids.size(), sum < 0 ? -1 : 1);
+  }
+  const Place count = mesh.indices.size() / 3;
+  std::vector<char> repeats(count, 0), turn(count, 0), dropped(count, 0), in_closed(count, 0);
+  for (const auto& [triangle, first] : shells.repeated) repeats[static_cast<Place>(first)] = 1;
+  for (Place i = 0; i < shells.shells.size(); ++i) {
+    const MeshShell& shell = shells.shells[i];
+    const bool is_closed = closed_number[i] >= 0, inwards = is_closed && factor[static_cast<Place>(closed_number[i])] < 0;
+    result.shells += inwards;
+    const auto repeated = [&](int t) { return repeats[static_cast<Place>(t)] != 0; };
+    if (!is_closed && std::ranges::any_of(shell.source, repeated)) continue;
+    for (Place k = 0; k < shell.source.size(); ++k) {
+      const auto t = static_cast<Place>(shell.source[k]);
+      in_closed[t] = is_closed;
+      turn[t] = (shell.turned[k] != 0) != inwards;
+      result.turned += turn[t] != 0;
+    }
+  }
+  for (const auto& [triangle, first] : shells.repeated)
+    if (in_closed[static_cast<Place>(first)]) dropped[static_cast<Place>(triangle)] = 1, ++result.repeated;
+  if (!result.any()) return result;
+  // A normal belongs to a vertex: it turns if all triangles around it turn.
+  std::vector<char> stays(mesh.vertices.size(), 0), turns(mesh.vertices.size(), 0);
+  std::vector<int> indices;
+  for (Place t = 0; t < count; ++t) {
+    if (dropped[t]) continue;
+    int corner[3] = {mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]};
+    for (const int v : corner) (turn[t] ? turns : stays)[static_cast<Place>(v)] = 1;
+    if (turn[t]) std::swap(corner[1], corner[2]);
+    indices.insert(indices.end(), std::begin(corner), std::end(corner));
+  }
+  mesh.indices = std::move(indices);
+  for (Place v = 0; v < mesh.normals.size(); ++v)
+    if (turns[v] && !stays[v]) mesh.normals[v] = -mesh.normals[v];
+  return result;
 }
 
 }  // namespace tactus::sim

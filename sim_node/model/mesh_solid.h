@@ -1,6 +1,7 @@
 // The solid that a triangle mesh encloses, whichever way its triangles face. Pure.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "sim_node/model/triangles.h"
@@ -20,5 +21,17 @@ struct MeshSolid {
 // a thousandth of its bounding box with openings, nothing, more than its bounding box, or a one-sided surface counts as its
 // bounding box, at least 0.1 mm thick, which the remark reports. O(n log n). Pre: mesh has a triangle with an area.
 MeshSolid solid_of(const TriangleMesh& mesh);
+
+struct TurnedTriangles {
+  std::size_t turned = 0;    // triangles that faced inwards, or the other side than their neighbours
+  std::size_t repeated = 0;  // removed triangles of closed shells, whose corners another one has
+  std::size_t shells = 0;    // closed shells that were turned as a whole
+  bool any() const { return turned + repeated > 0; }
+};
+
+// Lets the triangles of closed shells face out of the solid that solid_of() measures, and those of open shells the side of the
+// larger part of their neighbours: an open surface has two sides that can be meant. A one-sided surface, and an open shell whose
+// triangles exist twice, for both sides, stay as they are. Keeps the vertices, and the order of the triangles. O(n log n).
+TurnedTriangles turn_outwards(TriangleMesh& mesh);
 
 }  // namespace tactus::sim

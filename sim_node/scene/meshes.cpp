@@ -3,7 +3,9 @@
 #include <functional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
+#include "sim_node/model/mesh_solid.h"
 #include "sim_node/scene/meshes/confined_reader.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
 #include "sim_node/scene/sdf/values.h"
@@ -63,6 +65,17 @@ TriangleMesh make_display_mesh(const NamedMesh& named, const std::set<int>& mate
   return join_parts(finer, {});
 }
 
+std::string facing_sentence(const std::string& uri, const TurnedTriangles& found) {
+  const auto count = [](std::size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
+  std::string did;
+  if (found.turned > 0)
+    did = count(found.turned, "triangle") + (found.shells > 0 ? " facing inwards" : " facing the other side than the neighbours") +
+          (found.turned == 1 ? " is turned" : " are turned");
+  if (found.repeated > 0)
+    did += (did.empty() ? "" : " and ") + count(found.repeated, "repeated triangle") + (found.repeated == 1 ? " is" : " are") + " left out";
+  return "names mesh \"" + uri + "\", of which " + did + " for contact; let the faces of the file point outwards";
+}
+
 }  // namespace
 
 NamedMesh named_mesh(LoadContext& context, const sdf::Element& mesh) {
@@ -107,8 +120,18 @@ void add_mesh(LoadContext& context, TriangleMesh mesh) {
   context.world.meshes.push_back(std::move(mesh));
 }
 
-int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {
+int whole_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {
   return add(context, named.key, named, element, [&] { return join_parts(*named.parts, named.selection); });
+}
+
+int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element) {
+  const std::string key = named.key + "|outwards";
+  if (const auto known = context.mesh_of.find(key); known != context.mesh_of.end()) return known->second;
+  const int whole = whole_mesh(context, named, element);
+  TriangleMesh mesh = context.world.meshes[static_cast<std::size_t>(whole)];
+  const TurnedTriangles found = turn_outwards(mesh);
+  if (found.any()) context.warn(element, facing_sentence(named.uri, found));
+  return found.any() ? add(context, key, named, element, [&] { return std::move(mesh); }) : context.mesh_of[key] = whole;
 }
 
 int display_mesh(LoadContext& context, const NamedMesh& named, const std::set<int>& materials, int subdivide,

@@ -26,7 +26,11 @@ const MeshParts& mesh_parts(LoadContext& context, const std::filesystem::path& f
 // Appends a mesh to the world. Throws std::runtime_error with one clause when the scene has too many triangles.
 void add_mesh(LoadContext& context, TriangleMesh mesh);
 
-// The whole file as one mesh, for collision; returns its index in WorldDef::meshes.
+// The whole file as one mesh; returns its index in WorldDef::meshes.
+int whole_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
+
+// The whole file as one mesh, for contact: its triangles face outwards (sim_node/model/mesh_solid.h), and a warning reports those
+// that were turned. The same mesh as whole_mesh() if all faced outwards.
 int collision_mesh(LoadContext& context, const NamedMesh& named, const sdf::Element& element);
 
 // The mesh for display: the parts with these materials, with tangents where a picture is mapped onto them, subdivided

@@ -205,11 +205,11 @@ void add_mesh_visual(LoadContext& context, const sdf::Element& element, Appearan
     if (known != kinds.end()) known->second.insert(part.material);
     else kinds.emplace_back(def, std::set<int>{part.material});
   }
-  if (kinds.empty()) collision_mesh(context, named, element);  // throws with the reason
+  if (kinds.empty()) whole_mesh(context, named, element);  // throws with the reason
   for (auto& [def, materials] : kinds) {
-    // Without a look, texture coordinates are not needed, and the collision mesh is shared.
+    // Without a look, texture coordinates are not needed, and the mesh is shared with the collision.
     const bool shared = kinds.size() == 1 && def.look < 0 && subdivide == 0;
-    def.shape.mesh = shared ? collision_mesh(context, named, element) : display_mesh(context, named, materials, subdivide, element);
+    def.shape.mesh = shared ? whole_mesh(context, named, element) : display_mesh(context, named, materials, subdivide, element);
     context.world.visuals.push_back(def);
   }
 }

@@ -90,7 +90,10 @@ bool MessageConverter::convert_fields(const RecordedType& before, Reader& in, By
     const Field& field = now->fields[i];
     const int place = places->second[i];
     if (place < 0) {
-      append(out, 0, width(field.type));
+      if (field.type == "string")
+        append(out, 1, 4), append(out, 0, 1);  // an empty text: its length with the final zero
+      else
+        append(out, 0, width(field.type));
       continue;
     }
     const RecordedField old = parse_field(before.fields[static_cast<std::size_t>(place)]);

@@ -34,8 +34,10 @@ constexpr std::array<RenamedField, 5> kRenamedFields{{{"modality_report_t", "owe
 struct AddedField {
   std::string_view type, name;
 };
-// Fields that did not exist in 0.1.0 and for which 0 means that the value is not known.
-constexpr std::array<AddedField, 2> kAddedFields{{{"tool_constraint_t", "impulse_since_ns"}, {"tool_state_t", "injected_J"}}};
+// Fields that did not exist in 0.1.0 and for which 0, or an empty text, means that the value is not known.
+constexpr std::array<AddedField, 5> kAddedFields{
+    {{"tool_constraint_t", "impulse_since_ns"}, {"tool_state_t", "injected_J"}, {"question_t", "hint"},
+      {"question_t", "page"}, {"question_t", "pages"}}};
 
 std::string_view new_name(std::string_view type, std::string_view name) {
   for (const RenamedField& r : kRenamedFields)

@@ -47,7 +47,7 @@ EventUse LogIndex::use(std::int64_t event) const { return uses_[static_cast<std:
 
 LogIndex::Mark LogIndex::mark(const LogScanner& before) const {
   const RecordedRun& run = runs_.back();
-  return {before, events(), run.last_us, run.messages, run.copies, run.misdated};
+  return {before, events(), run.last_us, run.messages, run.copies, run.misdated, run.contradicting};
 }
 
 bool LogIndex::read(std::int64_t max_events) {
@@ -192,6 +192,7 @@ void LogIndex::place(const LogEvent& event, const header_t* header, const Record
   if (use == EventUse::kInOrder && overtaken(event, header, result.us)) use = EventUse::kLate;
   if (use == EventUse::kLate && run.late.size() >= kMaxLate) use = EventUse::kMisdated;
   if (use == EventUse::kMisdated) ++run.misdated;
+  run.contradicting = now.clock.contradicting();
   if (use == EventUse::kLate) {
     add_late(event, header, result.us);
   } else if (use == EventUse::kInOrder || !now.dated) {
@@ -225,6 +226,7 @@ void LogIndex::begin_run(Mark at) {
   uses_.resize(static_cast<std::size_t>(at.event));
   run.events = at.event - run.first_event;
   run.last_us = at.last_us, run.messages = at.messages, run.copies = at.copies, run.misdated = at.misdated;
+  run.contradicting = at.contradicting;
   run.guests.erase(present_->other ? present_->other_run : 0);
   scanner_ = at.before;
   end_run();
@@ -267,17 +269,20 @@ std::vector<std::string> LogIndex::warnings(int number) const {
                         (number == 0 ? "the column run holds their number, --run N selects one"
                                      : "run " + std::to_string(number) + " is read, --run N selects another one"));
   }
-  std::int64_t copies = 0;
+  std::int64_t copies = 0, contradicting = 0;
   std::size_t jumps = 0;
   std::string sizes;
   for (const RecordedRun& r : chosen) {
-    copies += r.copies;
+    copies += r.copies, contradicting += r.contradicting;
     for (const RecordedRun::Jump& jump : r.jumps)
       if (++jumps <= 3) sizes += (jumps > 1 ? ", " : "") + text_of_us(jump.by_us) + " s after " + text_of_us(jump.us - r.first_us) + " s";
   }
   if (jumps > 0)
     sentences.push_back("the clock of the recorder jumped " + std::to_string(jumps) + (jumps == 1 ? " time (" : " times (") + sizes +
                         (jumps > 3 ? ", ..." : "") + "); the times are corrected by the clocks of the senders");
+  if (contradicting > 0)
+    sentences.push_back(std::to_string(contradicting) + (contradicting == 1 ? " message has" : " messages have") +
+                        " a time of sending that contradicts the other messages of the sender, as after damage or a forgery; this time is not used");
   if (copies > 0) sentences.push_back(std::to_string(copies) + " copies of messages are left out, as of two loggers of one run");
   return sentences;
 }

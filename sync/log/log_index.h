@@ -57,6 +57,7 @@ struct RecordedRun {
   std::int64_t first_us = 0, last_us = 0;
   std::int64_t messages = 0;  // of this system, without copies
   std::int64_t copies = 0, misdated = 0;
+  std::int64_t contradicting = 0;  // messages with a false time of sending (RecorderClock)
   std::vector<Jump> jumps;
   std::vector<LateEvent> late;          // by time
   std::vector<SeekPoint> seek_points;  // every kSeekInterval_us
@@ -109,7 +110,7 @@ class LogIndex {
   struct Mark {
     LogScanner before;
     std::int64_t event;
-    std::int64_t last_us, messages, copies, misdated;
+    std::int64_t last_us, messages, copies, misdated, contradicting;
   };
   // Knowledge about the run that is read at present.
   struct Attempt {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/fields.h"
@@ -17,7 +18,6 @@ constexpr int kFirstEvents = 32;       // events that confirm the first stamp
 constexpr int kMaxAhead = 16'384;      // events that confirm a jump
 constexpr std::int64_t kAhead_us = 500'000, kSettled_us = 250'000;  // a backlog of delayed messages is shorter than kSettled_us
 constexpr std::int64_t kMaxLatency_us = 1'000'000;
-constexpr int kMaxContradictions = 3;
 constexpr std::int64_t kMinContradiction_us = 300'000;
 
 std::int64_t median(std::vector<std::int64_t> v) {
@@ -49,31 +49,59 @@ StampSample stamp_sample(const LogEvent& event) {
 
 std::optional<std::int64_t> RecorderClock::excess_us(const StampSample& sample) const {
   const auto it = sample.has_sender ? senders_.find(sample.sender) : senders_.end();
-  if (it == senders_.end()) return std::nullopt;
+  if (it == senders_.end() || !it->second.known()) return std::nullopt;
   return sample.stamp_us + shift_us_ - sample.publish_us - it->second.offset_us;
+}
+
+std::int64_t RecorderClock::Recent::floor_us() const {
+  auto sorted = us;
+  const auto third = sorted.begin() + 2;
+  std::nth_element(sorted.begin(), third, sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count, kRecent)));
+  return *third;
+}
+
+// No latency makes a message arrive before it was sent.
+bool RecorderClock::implausible(std::int64_t offset_us, std::int64_t usual_us) {
+  return offset_us < usual_us - kPause_us || offset_us > usual_us + kMaxStep_us;
 }
 
 void RecorderClock::learn(const StampSample& sample, std::int64_t us) {
   if (!sample.has_sender) return;
   const std::int64_t offset_us = us - sample.publish_us;
   const auto it = senders_.find(sample.sender);
-  if (it == senders_.end()) {
-    if (senders_.size() < kMaxSenders) senders_[sample.sender] = {offset_us, sample.publish_us};
+  if (it == senders_.end() && senders_.size() >= kMaxSenders) return;
+  Sender& sender = it == senders_.end() ? senders_[sample.sender] : it->second;
+  if (!sender.known()) {
+    sender.agreeing.add(offset_us);
+    if (!sender.known()) return;
+    sender.offset_us = sender.agreeing.floor_us();
+    sender.publish_us = us - sender.offset_us;
+    for (std::size_t i = 0; i < sender.agreeing.count; ++i) contradicting_ += implausible(sender.agreeing.us[i], sender.offset_us);
     return;
   }
-  Sender& sender = it->second;
   const double passed_us = std::max(0.0, static_cast<double>(sample.publish_us) - static_cast<double>(sender.publish_us));
   const std::int64_t relaxed_us = sender.offset_us + std::llround(std::min(1e9, kMaxDrift * passed_us));
-  if (offset_us < relaxed_us - kPause_us || offset_us > relaxed_us + kPause_us) {
-    // Its clock contradicts the others: the message is damaged or was delayed, or the sender replays its messages.
-    if (sender.contradictions++ == 0) sender.contradicted_since_us = us;
-    if (sender.contradictions >= kMaxContradictions && us - sender.contradicted_since_us >= kMinContradiction_us)
-      sender = {offset_us, sample.publish_us};
-    return;
-  }
-  sender.contradictions = 0;
-  sender.offset_us = std::min(offset_us, relaxed_us);
+  if (offset_us < relaxed_us - kPause_us || offset_us > relaxed_us + kPause_us) return contradict(sender, sample, us, relaxed_us);
+  contradicting_ += std::exchange(sender.implausible, 0);
+  sender.contradicting = {};
+  sender.agreeing.add(offset_us);
+  sender.offset_us = std::min(relaxed_us, sender.agreeing.floor_us());
   sender.publish_us = std::max(sender.publish_us, sample.publish_us);
+}
+
+// Its time contradicts the others: the message is false or was delayed, or the sender replays its messages. Several such messages
+// in a row set its offset.
+void RecorderClock::contradict(Sender& sender, const StampSample& sample, std::int64_t us, std::int64_t relaxed_us) {
+  const std::int64_t offset_us = us - sample.publish_us;
+  if (sender.contradicting.count == 0) sender.contradicted_since_us = us;
+  sender.contradicting.add(offset_us);
+  sender.implausible += implausible(offset_us, relaxed_us);
+  if (sender.contradicting.count < kMinLearned || us - sender.contradicted_since_us < kMinContradiction_us) return;
+  const Recent found = sender.contradicting;
+  sender = {};
+  sender.agreeing = found;
+  sender.offset_us = found.floor_us();
+  sender.publish_us = us - sender.offset_us;
 }
 
 RecorderClock::Result RecorderClock::accept(const StampSample& sample, std::int64_t us, std::int64_t jump_us) {

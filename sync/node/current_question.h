@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <optional>
 #include <tactus/question_t.hpp>
+#include <utility>
 
+#include "sync/node/question_pages.h"
 #include "sync/time/time.h"
 
 namespace tactus::sync {
@@ -19,23 +21,26 @@ class CurrentQuestion {
   explicit CurrentQuestion(std::int64_t run_id) : run_id_(run_id) {}
 
   // The newest question of one leader holds. Returns false when the message is of another run, is older than the newest one,
-  // or comes from a second sender while one leads.
+  // comes from a second sender while one leads, or is a page of a question that is not complete yet.
   bool push(const question_t& m, HostTime arrival) {
     if (run_id_ != 0 && m.header.run_id != run_id_) return false;
     if (newest(arrival)) {
       if (m.header.source != newest_->header.source) return false;
       if (m.header.incarnation == newest_->header.incarnation && m.header.seq <= newest_->header.seq) return false;
     }
-    newest_ = m, arrival_ = arrival;
+    auto whole = pages_.push(m);
+    if (!whole) return false;
+    newest_ = std::move(whole), arrival_ = arrival;
     return true;
   }
-  void clear() { newest_.reset(); }
+  void clear() { newest_.reset(), pages_.clear(); }
 
-  // The newest message, also one without a question; null: no process leads a study.
+  // The newest question, whole, also one of kind NOTHING; null: no process leads a study.
   const question_t* newest(HostTime now) const { return newest_ && now - arrival_ <= kTimeout ? &*newest_ : nullptr; }
 
  private:
   std::int64_t run_id_;
+  QuestionReader pages_;
   std::optional<question_t> newest_;
   HostTime arrival_{};
 };

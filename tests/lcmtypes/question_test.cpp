@@ -1,8 +1,8 @@
-// Tests of the size and the validation of questions.
+// Tests of the validation of questions.
 #include <catch2/catch.hpp>
 #include <tactus/question_t.hpp>
 
-#include "lcmtypes/channels.h"
+#include "lcmtypes/page_limits.h"
 #include "lcmtypes/valid.h"
 
 using namespace tactus;
@@ -25,15 +25,6 @@ question_t number() {
 
 }  // namespace
 
-TEST_CASE("The largest question fits in one datagram") {
-  question_t q = choice();
-  q.text.assign(600, 'a');
-  q.choices.assign(9, std::string(40, 'b')), q.count = 9;
-  q.condition.assign(64, 'c'), q.progress.assign(64, 'd');
-  REQUIRE(valid(q));
-  CHECK(q.getEncodedSize() <= static_cast<int>(channels::kMaxMessageBytes));
-}
-
 TEST_CASE("A question is one line of UTF-8, and its length counts characters") {
   const std::string ya = "\xd1\x8f", na = "\xe0\xa4\xa8";
   const auto repeated = [](const std::string& c, int count) {
@@ -47,7 +38,7 @@ TEST_CASE("A question is one line of UTF-8, and its length counts characters") {
   q.text += na;
   CHECK_FALSE(valid(q));
   for (const char* wrong : {"\xff", "\xe0\xa4", "a\xc2\x85", "\xe2\x80\xa8"}) {
-    for (std::string question_t::*text : {&question_t::text, &question_t::condition, &question_t::progress}) {
+    for (std::string question_t::*text : {&question_t::text, &question_t::condition, &question_t::progress, &question_t::hint}) {
       question_t damaged = choice();
       damaged.*text = wrong;
       CHECK_FALSE(valid(damaged));
@@ -59,14 +50,6 @@ TEST_CASE("A question is one line of UTF-8, and its length counts characters") {
   q = choice();
   q.choices[0] = repeated(ya, 41);
   CHECK_FALSE(valid(q));
-}
-
-TEST_CASE("A question without texts has the size that tactus study assumes") {
-  // scripts/python/tactus/study/texts.py: OTHER_BYTES, and TEXT_BYTES for each text.
-  question_t q{};
-  CHECK(q.getEncodedSize() == 8 + 48 + 41 + 3 * 5);
-  q.text = "\xe0\xa4\xa8", q.choices = {"ab", ""}, q.count = 2;
-  CHECK(q.getEncodedSize() == 8 + 48 + 41 + 5 * 5 + 5);
 }
 
 TEST_CASE("A question without a valid answer is rejected") {
@@ -87,4 +70,9 @@ TEST_CASE("A question without a valid answer is rejected") {
   CHECK(refused(number(), [](question_t& q) { q.highest = q.lowest; }));
   CHECK(refused(number(), [](question_t& q) { q.step = 0; }));
   CHECK(refused(number(), [](question_t& q) { q.step = 2.1; }));
+  CHECK(refused(number(), [](question_t& q) { q.hint.assign(65, 'a'); }));
+  CHECK(refused(number(), [](question_t& q) { q.page = 1; }));
+  CHECK(refused(number(), [](question_t& q) { q.page = -1; }));
+  CHECK(refused(number(), [](question_t& q) { q.page = q.pages = 2; }));
+  CHECK(refused(number(), [](question_t& q) { q.pages = kMaxQuestionPages + 1; }));
 }

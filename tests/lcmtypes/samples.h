@@ -255,6 +255,7 @@ class Samples {
     for (int i = 0; i < m.count; ++i) m.choices.push_back(name(40));
     if (m.kind == question_t::NUMBER) m.lowest = real(-9, 0), m.highest = real(1, 9), m.step = real(0.01, 1);
     m.trial = static_cast<std::int32_t>(whole(0, 999)), m.condition = name(), m.progress = name();
+    m.hint = name(64), m.pages = 1;
   }
   void fill(answer_t& m) {
     fill(m.header), m.id = whole(1, 1 << 30), m.choice = static_cast<std::int32_t>(whole(-1, 8)), m.number = real(-9, 9);

@@ -44,8 +44,11 @@ std::string rejection(Answers& answers, const PageAnswer& answer, sync::HostTime
 TEST_CASE("A page receives the question, and its answer carries the question's id and the kind of input") {
   Answers a(7);
   CHECK(a.to_json(at(0)).is_null());
-  a.push(question(question_t::CHOICE), at(0));
+  question_t asked = question(question_t::CHOICE);
+  asked.hint = "Taste: die Zahl";
+  a.push(asked, at(0));
   const auto shown = a.to_json(at(0.1));
+  CHECK(shown["hint"] == "Taste: die Zahl");
   CHECK((shown["kind"] == "choice" && shown["text"] == "Which was first?" && shown["choices"][1] == "flash"));
   CHECK((shown["trial"] == 3 && shown["condition"] == "audio +80 ms" && shown["progress"] == "block 1 of 4"));
   CHECK(shown["answered"] == false);

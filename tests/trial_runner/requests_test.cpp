@@ -20,8 +20,9 @@ TEST_CASE("Each kind of request is parsed") {
   const auto q =
       std::get<QuestionRequest>(
           parse_request(
-              R"({"question": {"kind": "number", "text": "How hard?", "lowest": 0, "highest": 1, "step": 0.1, "trial": 3, "condition": "c"}})"))
+              R"({"question": {"kind": "number", "text": "How hard?", "lowest": 0, "highest": 1, "step": 0.1, "trial": 3, "condition": "c", "hint": "Pfeile"}})"))
           .question;
+  CHECK(q.hint == "Pfeile");
   CHECK(q.kind == question_t::NUMBER);
   CHECK(q.trial == 3);
   CHECK(q.step == 0.1);

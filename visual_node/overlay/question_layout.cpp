@@ -25,6 +25,7 @@ void fill(std::vector<Rect>& overlay, float x, float y, float width, float heigh
 }
 
 std::string hint(const question_t& m) {
+  if (!m.hint.empty()) return m.hint;
   if (m.kind == question_t::READ) return "Enter: continue";
   if (m.kind == question_t::NUMBER) return "arrows: move the mark   Enter: answer";
   return "press its number";

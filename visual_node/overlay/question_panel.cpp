@@ -54,7 +54,7 @@ bool is_ascii(const question_t& m) {
   const auto ascii = [](const std::string& text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   };
-  return ascii(m.text) && ascii(m.progress) && std::all_of(m.choices.begin(), m.choices.end(), ascii);
+  return ascii(m.text) && ascii(m.progress) && ascii(m.hint) && std::all_of(m.choices.begin(), m.choices.end(), ascii);
 }
 
 std::vector<std::string> wrap_text(std::string_view text, std::size_t letters) {

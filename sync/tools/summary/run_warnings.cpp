@@ -1,5 +1,7 @@
 #include "sync/tools/summary/run_warnings.h"
 
+#include <algorithm>
+
 namespace tactus::sync {
 
 void RunWarnings::observe(const node_health_t& report, HostTime now) {
@@ -10,6 +12,10 @@ void RunWarnings::observe(const node_health_t& report, HostTime now) {
   node.expected_events = report.expected_events;
   node.ready = report.state != node_health_t::WAITING;
   node.reason = report.status_text.substr(0, report.status_text.find(';'));  // a note ends with the scheduling of the process
+  const bool beginning = !begin_seen_ || now - begin_ <= kBeginning;
+  if (!first && beginning && begin_seen_ && report.header.incarnation != node.incarnation) node.same_incarnation = false;
+  node.incarnation = report.header.incarnation, node.missed = report.missed_ticks;
+  if (beginning) node.missed_after = report.missed_ticks;
   if (first && begin_seen_) node.late = true, node.late_reason = "it started later";
   if (!world_seen_ || now - last_world_ > kWorldSilent) return;
   ++node.reports;
@@ -24,8 +30,18 @@ void RunWarnings::observe_world(std::int64_t sim_ns, HostTime now) {
   world_seen_ = true;
   begin_seen_ = sim_ns <= kBeginWithin_ns;
   if (!begin_seen_) return;
+  begin_ = now;
+  for (auto& [name, node] : nodes_) node.missed_before = node.missed_after = node.missed;
   for (auto& [name, node] : nodes_)
     if (!node.ready) node.late = true, node.late_reason = node.reason;
+}
+
+std::map<std::string, std::int64_t> RunWarnings::missed_in_first_second() const {
+  std::map<std::string, std::int64_t> missed;
+  if (!begin_seen_) return missed;
+  for (const auto& [name, node] : nodes_)
+    if (node.same_incarnation) missed[name] = std::max<std::int64_t>(0, node.missed_after - node.missed_before);
+  return missed;
 }
 
 std::vector<std::string> RunWarnings::sentences(const PresentationMatcher& matcher) const {

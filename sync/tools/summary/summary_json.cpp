@@ -44,6 +44,7 @@ Json json_of_nodes(const RunSummary& s) {
     out[name] = {{"rate_hz", rounded(n.rate_Hz, 1000)},
                  {"ticks", n.ticks},
                  {"missed_ticks", n.missed_ticks},
+                 {"missed_first_second", n.missed_first_second ? Json(*n.missed_first_second) : Json(nullptr)},
                  {"stale_ticks", n.stale_ticks},
                  {"tick_us", quantiles(n.tick)},
                  {"wake_us", quantiles(n.wake)},

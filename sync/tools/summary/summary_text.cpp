@@ -32,6 +32,8 @@ std::string nodes(const RunSummary& s) {
                 us(n.tick.quantile(0.99)), us(n.tick.max()), us(n.wake.quantile(0.5)), us(n.wake.quantile(0.99)),
                 us(n.wake.max()), static_cast<long long>(n.restarts), n.alive_at_end ? "" : "  gone");
     out += line("  %.180s", n.scheduling.c_str());
+    if (n.missed_first_second.value_or(0) > 0)
+      out += line("  %lld of the missed in the first second of the world", static_cast<long long>(*n.missed_first_second));
     if (!n.profile_effect.empty()) out += line("  profile effect: %.180s", n.profile_effect.c_str());
   }
   return out;

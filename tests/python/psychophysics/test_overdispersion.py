@@ -5,10 +5,11 @@ import sys
 import unittest
 
 import numpy as np
-from scipy.stats import binom
+from scipy.special import gammaln
+from scipy.stats import betabinom, binom
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
-from tactus.psychophysics import fits, intervals, overdispersion
+from tactus.psychophysics import fits, intervals, overdispersion, posterior
 from tactus.psychophysics.functions import FUNCTIONS
 
 YES, TOTAL = np.array([20, 19, 20, 14, 18, 20, 9, 17, 20, 16]), np.full(10, 20)
@@ -63,17 +64,44 @@ class Dispersion(unittest.TestCase):
         self.assertTrue(2.5 < np.mean([d.factor for d in found]) < 4.5, np.mean([d.factor for d in found]))
         self.assertGreater(min(d.width() for d in found), 0.999)
 
-    def test_widened_intervals_hold_the_truth_where_binomial_ones_do_not(self):
-        yes, n = answers(0.15, 120, 2), 120
-        total = np.full(yes.shape, 20.0)
-        width = np.array([d.width() for d in self.found(0.15, n, 2)])
-        held = []
-        for factor in (np.ones(n), width):
-            many = fits.fit_many(SOA, yes / factor[:, None], total / factor[:, None], "order")
-            low, high = intervals.of_many(many, "pss")
-            held.append(np.mean((low <= TRUTH["pss"]) & (TRUTH["pss"] <= high)))
+    def test_intervals_of_over_dispersed_answers_hold_the_truth_where_binomial_ones_do_not(self):
+        n = 60
+        held, widths = [], []
+        for rho in (0.15, 0.0):
+            yes = answers(rho, n, 2)
+            many = fits.fit_many(SOA, yes, np.full(yes.shape, 20.0), "order")
+            for sets in (many, overdispersion.over_dispersed(many, 3.0)):
+                low, high = intervals.of_many(sets, "pss")
+                held.append(np.mean((low <= TRUTH["pss"]) & (TRUTH["pss"] <= high)))
+                widths.append(np.median(high - low))
         self.assertLess(held[0], 0.85)
-        self.assertGreater(held[1], 0.95 - 3 * math.sqrt(0.95 * 0.05 / n))
+        for share in held[1::2]:
+            self.assertGreater(share, 0.95 - 3 * math.sqrt(0.95 * 0.05 / n))
+        # Independent answers show that they are, so their intervals become less longer than those of others, whose design effect is 3.85 or less.
+        self.assertTrue(1.0 <= widths[3] / widths[2] < 1.6, widths)
+        self.assertTrue(1.6 < widths[1] / widths[0] < 2.6, widths)
+
+    def test_the_tables_of_the_posterior_are_the_beta_binomial_likelihood(self):
+        rng = np.random.default_rng(4)
+        for _ in range(50):
+            total = rng.integers(1, 60, 5).astype(float)
+            yes, eta, p = np.floor(rng.uniform(size=5) * (total + 1)), rng.uniform(0.01, 0.7, 1), rng.uniform(0.001, 0.999, (1, 1, 1, 5))
+            of = posterior.OverDispersedAnswers(yes[None], total[None], 1.0)
+            of.tables, of.log_weights = of.tables[:1], np.zeros(1)
+            pairs = np.unique(np.stack([yes, total], axis=1), axis=0)
+            of.tables[0] = posterior.beta_binomial_tables(eta, pairs[:, 0], pairs[:, 1])[0]
+            nu = 1 / eta[0] ** 2 - 1
+            exact = betabinom.logpmf(yes, total, nu * p[0, 0, 0], nu * (1 - p[0, 0, 0])) - (gammaln(total + 1) - gammaln(yes + 1) - gammaln(total - yes + 1))
+            self.assertAlmostEqual(float(of.integrated(p)[0, 0, 0]), float(exact.sum()), delta=2e-3)
+
+    def test_single_answers_at_a_level_have_no_dispersion(self):
+        rng = np.random.default_rng(5)
+        levels = np.linspace(-240, 240, 121)
+        yes = (rng.random(121) < FUNCTIONS["order"].p(levels, **TRUTH)).astype(float)
+        many = fits.fit(levels, yes, np.ones(121), "order").many
+        same = overdispersion.over_dispersed(many, 1.0)
+        for name in ("pss", "sd"):
+            np.testing.assert_allclose(np.ravel(intervals.of_many(same, name)), np.ravel(intervals.of_many(many, name)), rtol=0.01, atol=0.5)
 
     def test_without_over_dispersion_nothing_is_widened(self):
         fitted = fits.fit(SOA, answers(0, 1, 3)[0], np.full(len(SOA), 20.0), "order")

@@ -86,7 +86,7 @@ class StudyFile(unittest.TestCase):
                 ('repetitions="4"', 'repetitions="4" trials="3"', "has no trials="),
                 ('repetitions="4"', 'repetitions="100000"', "300000 trials are too many"),
                 ('<choice>no</choice>', '', "takes 2 choices"),
-                ('Together?', 'T' * 601, "has 601 characters; write 1 to 600"),
+                ('Together?', 'T' * 6001, "has 6001 characters; write 1 to 6000"),
                 ('name="sd" value="50"', 'name="width" value="50"', "needs the parameters pss, sd"),
                 ('function="synchrony_window"', 'function="bell"', "there is no function bell"),
                 ('<blocks', '<chunks', "chunks")):

@@ -15,6 +15,7 @@ sys.path.insert(0, str(SCRIPTS / "python"))
 from tactus.refusal import Refusal
 from tactus.study import bids_labels, fonts, formats, journal, questions, study_file, texts
 from tactus.study.plan import Plan
+from tactus.study.session import Session
 
 # The same question in each of six scripts, and Hebrew.
 ASKED = ("Did they come together?", "Ήρθαν μαζί;", "Они пришли вместе?", "它们是同时到来的吗？", "هل جاءا معًا؟", "क्या वे एक साथ आए?", "האם הם באו יחד?")
@@ -59,16 +60,18 @@ class Texts(unittest.TestCase):
         self.refused("U+0085", text="a\u0085b")
         self.refused("U+2028", text="a\u2028b")
         self.refused("no visible character", text="\u200d\u00a0\u3000")
-        self.refused("has 601 characters", text="я" * 601)
+        self.refused("has 6001 characters; write 1 to 6000", text="я" * 6001)
         self.refused("the text of choice", "has 41 characters", text="?", b="я" * 41)
 
-    def test_a_text_that_no_message_can_hold_is_refused_with_its_bytes(self):
-        room = texts.MESSAGE_BYTES - texts.message_bytes("")
-        self.assertGreater(room, 1100)
-        fits = "न" * ((room - 2 * (5 + len("picture"))) // 3)
-        self.assertEqual(study_of(fits).question, fits)
-        self.refused("bytes in UTF-8, and one screen holds", text="न" * 600)
-        self.refused("with its choices has", text=fits, a="न" * 40)
+    def test_a_text_and_choices_of_any_script_have_the_same_limits_in_characters(self):
+        for letter in ("a", "я", "न", "\U0001d4d0"):
+            s = study_of(letter * 6000, a=letter * 40, b=letter * 40)
+            self.assertEqual((len(s.question), len(s.choices[0]), len(s.instructions[0]), len(s.questionnaire[0].text)), (6000, 40, 6000, 6000))
+
+    def test_a_choice_that_is_too_long_with_the_words_of_the_senses_is_refused(self):
+        word = '<phrase of="audio">' + "я" * 30 + "</phrase>"
+        self.refused("with the word " + "я" * 30 + " filled in has 41 characters", text="?", a="{a} пришёл был", phrases=word)
+        self.assertEqual(study_of("?", a="{a} пришёл", phrases=word).choices[0], "{a} пришёл")
 
     def test_phrases_of_the_session_are_in_the_language_of_the_file(self):
         s = study_of("{a}?", phrases='<phrase of="audio">звук</phrase><phrase of="visual">картина</phrase><phrase of="end">Спасибо!</phrase>'
@@ -79,17 +82,39 @@ class Texts(unittest.TestCase):
         self.assertEqual(s.phrases["end"], "Спасибо!")
         self.assertEqual(texts.fill(s.phrases["break"], block=1, blocks=2, seconds=30), "Блок 1 из 2. Пауза 30 с.")
         self.refused("the phrase of progress lacks {trials}", text="?", phrases='<phrase of="progress">{done}</phrase>')
-        self.refused("more than 64 bytes", text="?", phrases='<phrase of="progress">' + "я" * 30 + ' {done} {trials}</phrase>')
+        self.refused("more than 64 characters", text="?", phrases='<phrase of="progress">' + "я" * 54 + ' {done} {trials}</phrase>')
+        self.assertEqual(study_of("?", phrases='<phrase of="progress">' + "я" * 52 + ' {done} {trials}</phrase>').phrases["progress"], "я" * 52 + " {done} {trials}")
 
-    def test_a_cut_never_divides_a_character(self):
+    def test_hints_of_keys_are_in_the_language_of_the_file(self):
+        s = study_of("?", phrases='<phrase of="hint_read">Ввод: дальше</phrase><phrase of="hint_number">Стрелки, потом Ввод</phrase>')
+        self.assertEqual([s.phrases[texts.HINTS[kind]] for kind in ("read", "choice", "number")], ["Ввод: дальше", "", "Стрелки, потом Ввод"])
+        self.refused("has 65 characters", text="?", phrases='<phrase of="hint_choice">' + "я" * 65 + "</phrase>")
+
+    def test_screens_hold_the_whole_text_and_divide_no_word_and_no_letter_from_its_marks(self):
         dice = random.Random(1)
-        for _ in range(300):
-            text = "".join(dice.choice("aяन\U0001f600") for _ in range(dice.randrange(12)))
-            most = dice.randrange(24)
-            cut = texts.first_bytes(text, most)
-            self.assertTrue(text.startswith(cut))
-            self.assertLessEqual(len(cut.encode()), most)
-            self.assertTrue(cut == text or len((cut + text[len(cut)]).encode()) > most)
+        for case in range(300):
+            blank = " " * (case % 2)
+            words = ["".join(dice.choice("aяन") + dice.choice(("", "", "\u0301", "\u093e")) for _ in range(dice.randrange(1, 12))) + dice.choice(("", "", "", ".", "。"))
+                     for _ in range(dice.randrange(1, 500))]
+            text = blank.join(words)
+            parts = texts.screens(text)
+            self.assertEqual(blank.join(parts) if blank else "".join(parts), text)
+            for part in parts:
+                self.assertTrue(0 < len(part) <= texts.LONGEST_SCREEN and part == part.strip(" "))
+                self.assertNotEqual(unicodedata.category(part[0])[0], "M")
+            self.assertEqual(len(parts), 1) if len(text) <= texts.LONGEST_SCREEN else self.assertLessEqual(len(parts), 2 + 2 * len(text) // texts.LONGEST_SCREEN)
+        self.assertEqual(texts.screens("a" * 600), ["a" * 600])
+        self.assertEqual(texts.screens("b" * 400 + ". " + "c" * 300), ["b" * 400 + ".", "c" * 300])
+
+    def test_a_long_text_is_shown_on_several_screens_and_the_last_one_asks(self):
+        sent = []
+        session = Session.__new__(Session)
+        session.study = study_of("?", phrases='<phrase of="hint_read">Ввод: дальше</phrase><phrase of="hint_choice">Нажмите номер</phrase>')
+        session.plan, session.participant, session.cluster = mock.Mock(done=0, expected_trials=4), None, mock.Mock()
+        session.runner = mock.Mock(send=lambda question: sent.append(question), wait_for=lambda *_: True)
+        session.ask({"kind": "choice", "text": "b" * 400 + ". " + "c" * 400 + ". " + "d" * 10, "choices": ["1", "2"]})
+        self.assertEqual([(q["kind"], q["hint"], len(q["text"])) for q in sent], [("read", "Ввод: дальше", 401), ("choice", "Нажмите номер", 412)])
+        self.assertTrue(all(len(q["text"]) <= texts.LONGEST_SCREEN for q in sent))
 
 
 class Names(unittest.TestCase):

@@ -1,5 +1,7 @@
 #include "sim_node/scene/shapes.h"
 
+#include <sstream>
+
 #include "tests/sim_node/support/scene_file.h"
 
 using namespace tactus::sim;
@@ -124,4 +126,32 @@ TEST_CASE("The bounding box of a rotated shape is tight") {
     CHECK(box.contains(Eigen::AlignedBox3d(sampled.min() + Vector3d::Constant(1e-9), sampled.max() - Vector3d::Constant(1e-9))));
     CHECK((box.sizes() - sampled.sizes()).norm() < 2e-4);
   }
+}
+
+TEST_CASE("A mesh that is inside out touches like the right one, and a warning names it") {
+  const std::string text = link(collision("<mesh><uri>cube.obj</uri></mesh>"));
+  SceneFile right, wrong;
+  right.write("scene.sdf", text), right.write("cube.obj", kCube);
+  std::string turned;
+  std::istringstream lines(kCube);
+  for (std::string line; std::getline(lines, line); turned += line + "\n")
+    if (line[0] == 'f') std::swap(line[2], line[8]), std::swap(line[4], line[6]);
+  wrong.write("scene.sdf", text), wrong.write("cube.obj", turned);
+  const WorldDef a = right.load(), b = wrong.load();
+  CHECK(right.warnings.empty());
+  REQUIRE(wrong.short_warnings().size() == 1);
+  CHECK_THAT(wrong.short_warnings()[0], Catch::Contains("cube.obj") && Catch::Contains("12 triangles facing inwards are turned for contact"));
+  const auto faces = [](const WorldDef& w) {
+    const TriangleMesh& mesh = w.meshes[static_cast<std::size_t>(w.shapes.front().mesh)];
+    std::vector<double> outwards;
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+      const auto at = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(mesh.indices[i + k])]; };
+      const Vector3d normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+      outwards.push_back(normal.dot((at(0) + at(1) + at(2)) / 3 - Vector3d(0.5, 0.5, 0.5)));
+      CHECK(mesh.normals[static_cast<std::size_t>(mesh.indices[i])].dot(normal) > 0);
+    }
+    return outwards;
+  };
+  for (const WorldDef* w : {&a, &b})
+    for (const double outwards : faces(*w)) CHECK(outwards == Approx(0.5));
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <tactus/question_t.hpp>
 #include <tactus/tool_constraint_t.hpp>
 #include <tactus/tool_state_t.hpp>
 #include <tactus/touch_applied_t.hpp>
@@ -199,6 +200,29 @@ TEST_CASE("A log with impulses of single precision is converted with the same va
     CHECK(Bytes(out[3 * i + 1].data.begin(), out[3 * i + 1].data.end()) == sync::encode(models[i]));
     CHECK_FALSE(decode<touch_model_t>(out[3 * i + 2].data.data(), out[3 * i + 2].data.size()));
   }
+}
+
+TEST_CASE("A question of a log from before pages and hints is converted to one page without a hint") {
+  test::Samples samples(9);
+  question_t question{};
+  samples.fill(question);
+  question.hint.clear(), question.page = question.pages = 0;
+  Bytes log, before = with_fingerprint(sync::encode(question), kOldFingerprint);
+  constexpr std::size_t kHintAndPages = 5 + 4 + 4;  // the last fields
+  before.resize(before.size() - kHintAndPages);
+  for (const std::string& page : log_types()) {
+    std::string old = replaced(page, hexadecimal(question_t::getHash()), hexadecimal(kOldFingerprint));
+    old = replaced(old, "  string progress\n  string hint\n  int32_t page\n  int32_t pages\n", "  string progress\n");
+    append_event(log, 0, 10, kLogTypes, Bytes(old.begin(), old.end()));
+  }
+  append_event(log, 1, 20, channels::kQuestion, before);
+  const Result result = upgraded(log);
+  CHECK(result.counts.converted == 1);
+  for (const LogEvent& e : read_all(result.bytes))
+    if (e.channel == channels::kQuestion) {
+      CHECK(Bytes(e.data.begin(), e.data.end()) == sync::encode(question));
+      CHECK(decode<question_t>(e.data.data(), e.data.size()));
+    }
 }
 
 TEST_CASE("A conversion keeps channels, stamps, order and all other bytes") {

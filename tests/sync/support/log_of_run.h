@@ -27,11 +27,12 @@ struct TestRun {
   std::int64_t run_id = 77, incarnation = 5;
   std::string scene = "one.sdf";
   int ticks = 1000;  // of 5 ms
+  int nodes = 3;
   std::int64_t begin_ns = 5'000'000'000, offset_ns = 1'700'000'000'000'000'000;
   std::string text = "fine";  // in every message
 };
 
-// LOG_INFO, then in each tick a health of each of three nodes, with latencies up to 0.4 ms, in the order of arrival.
+// LOG_INFO, then in each tick a health of each node, with latencies up to 0.4 ms, in the order of arrival.
 inline TestEvents events_of(const TestRun& run) {
   TestEvents events;
   std::mt19937 random(static_cast<unsigned>(run.incarnation));
@@ -44,7 +45,7 @@ inline TestEvents events_of(const TestRun& run) {
   events.push_back({(run.begin_ns + run.offset_ns) / 1000, channels::kLogInfo, encode(info)});
   std::int64_t newest_us = 0;
   for (int tick = 0; tick < run.ticks; ++tick)
-    for (int node = 0; node < 3; ++node) {
+    for (int node = 0; node < run.nodes; ++node) {
       const std::int64_t sent_ns = run.begin_ns + 5'000'000LL * tick + 1'000'000 * node;
       node_health_t m{};
       m.node = "node_" + std::to_string(node);

@@ -106,6 +106,19 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("The hint of the study replaces the English names of the keys") {
+  question_t m = question(1, question_t::READ);
+  const auto english = drawn(m, 0, {640, 480});
+  m.hint = "Enter: continue";
+  const auto same = drawn(m, 0, {640, 480});
+  CHECK(same.size() == english.size());
+  m.hint = "Eingabe: weiter";
+  CHECK(is_ascii(m));
+  CHECK(drawn(m, 0, {640, 480}).size() != english.size());
+  m.hint = "\xd0\x92\xd0\xb2\xd0\xbe\xd0\xb4";
+  CHECK_FALSE(is_ascii(m));
+}
+
 TEST_CASE("The longest possible question is drawn completely within the picture") {
   const question_t m = longest();
   for (const Picture& p : kPictures) {

@@ -19,7 +19,7 @@ export interface Degradation { name: string; senses: Record<string, SliderValues
 // question: its name; kind "nothing": a trial is in progress. leader: the leading node; "": it publishes no health.
 export interface Study {
   question: string; kind: "nothing" | "read" | "choice" | "number"; text: string; choices: string[]; lowest: number; highest: number; step: number;
-  trial: number; condition: string; progress: string; answered: boolean; leader: string;
+  trial: number; condition: string; progress: string; hint: string; answered: boolean; leader: string;
 }
 export interface Hello extends Common { t: "hello"; live: boolean; title: string; thresholds: Threshold[]; catalog: VariableInfo[] }
 export interface Frame extends Common {

@@ -15,7 +15,7 @@ function says(tag: string, className: string, text: string): HTMLElement {
 
 // One sentence about characters that the browser cannot draw; undefined: it can.
 function problemOf(m: Study): HTMLElement | undefined {
-  const lacking = uncovered([m.text, ...m.choices, m.progress], glyphOf(`20px ${getComputedStyle(document.body).fontFamily}`));
+  const lacking = uncovered([m.text, ...m.choices, m.hint, m.progress], glyphOf(`20px ${getComputedStyle(document.body).fontFamily}`));
   return lacking.length === 0 ? undefined
     : make("p", "bad", `No font of this browser covers ${lacking.slice(0, 4).map(nameOf).join(", ")}${lacking.length > 4 ? " and others" : ""}: install a font that does on this machine, and reload the page.`);
 }
@@ -71,9 +71,13 @@ export class StudyPanel {
     answers.dir = directionOf(m.text);  // the keys are where a line begins
     if (m.kind === "choice") m.choices.forEach((c, i) => answers.append(this.button(c, String(i + 1), { choice: i })));
     if (m.kind === "number") this.box.append(this.slide(m));
-    if (m.kind === "number") answers.append(this.button("answer", "Enter", { confirms: true }));
-    if (m.kind === "read") answers.append(this.button("continue", "Enter", { continues: true }));
-    this.box.append(answers, says("p", "quiet", m.progress));
+    // A hint of the study names the key itself.
+    const enter = m.hint ? "" : "Enter";
+    if (m.kind === "number") answers.append(this.button(m.hint || "answer", enter, { confirms: true }));
+    if (m.kind === "read") answers.append(this.button(m.hint || "continue", enter, { continues: true }));
+    this.box.append(answers);
+    if (m.kind === "choice" && m.hint) this.box.append(says("p", "quiet", m.hint));
+    this.box.append(says("p", "quiet", m.progress));
     this.showMark();
     // Measures the time after painting: a message that is posted just before a frame is drawn arrives just after it.
     requestAnimationFrame(() => {
@@ -84,7 +88,8 @@ export class StudyPanel {
   }
   private button(text: string, key: string, press: Press): HTMLElement {
     const button = make("button", "answer");
-    button.append(make("kbd", "", key), says("span", "", text));
+    if (key) button.append(make("kbd", "", key));
+    button.append(says("span", "", text));
     button.addEventListener("click", (e) => this.press(press, e.timeStamp));
     return button;
   }

@@ -15,6 +15,7 @@ from tactus.psychophysics import fits, independent_channels, intervals, overdisp
 
 MAX_LEVELS = 60  # design; more measured values are grouped into this number of bins, each at its mean
 FOLLOW = ("peak", "absolute_low75", "absolute_high75")  # without an interval: peak is 1 - lapse
+RATES = ("guess", "lapse")  # of over-dispersed answers their intervals are widened; those of the others integrate over the dispersion
 TOO_FAR = "the levels are too far apart to estimate the spread; it may be 0, and its interval gives the largest one"
 FEWEST_TRIALS = 20  # needed for a fit; design
 
@@ -139,9 +140,9 @@ def curve(condition, participant, rows, rng, asymmetric=False):
                 forced = fits.fit(made.levels, made.yes, made.total, answers.FUNCTION["sj"], forced_peak=True)
                 made.aic = {"free peak": fitted.aic, "peak near 1": forced.aic, "asymmetric": made.asymmetric.aic}
             made.dispersion = overdispersion.dispersion(fitted, rng)
-            judged = overdispersion.inflated(fitted.many, made.dispersion.width())
+            of_rates, of_others = overdispersion.inflated(fitted.many, made.dispersion.width()), overdispersion.over_dispersed(fitted.many, made.dispersion.factor)
             for name in wanted(fitted):
-                low, high = (float(v[0]) for v in intervals.of_many(judged, name))
+                low, high = (float(v[0]) for v in intervals.of_many(of_rates if name in RATES else of_others, name))
                 made.intervals[name] = min(low, made.value(name)), max(high, made.value(name))
     return made
 

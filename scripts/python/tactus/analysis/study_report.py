@@ -145,8 +145,8 @@ def curves_section(report):
         varied = [c for c in mine if c.fit and c.dispersion.p < POOR]
         if varied:
             parts.append(f"<p>The answers of {safe(listed([c.participant or 'all together' for c in varied]))} do not fit the function as independent answers would (p = "
-                         + safe(", ".join(f"{c.dispersion.p:.3f}" for c in varied)) + ", deviance of refits); the variances of the estimates are multiplied by "
-                         + safe(", ".join(f"{c.dispersion.width():.2f}" for c in varied)) + ".</p>\n")
+                         + safe(", ".join(f"{c.dispersion.p:.3f}" for c in varied)) + ", deviance of refits); their design effects are "
+                         + safe(", ".join(f"{c.dispersion.factor:.2f}" for c in varied)) + ", and the intervals allow for this.</p>\n")
         doubtful = [c.participant or "all together" for c in mine if c.fit and c.why]
         if doubtful:
             parts.append(f"<p>{safe(listed(doubtful).capitalize())}: {safe(psychometric.TOO_FAR)}.</p>\n")

@@ -27,7 +27,8 @@ FIRST_RATES = (0.02, 0.02)  # initial guess and lapse rates; design
 class Fits:
     """n fits of one function. theta (n, 4) and answers are on an axis where the levels of each set span 1, from -0.5 to 0.5: z = middle +
     span * axis. free (4,): mask of fitted parameters. value (n,): log likelihood plus log prior. done (n,): scoring converged.
-    posteriors: results that the intervals of several parameters share (posterior.py); empty in a copy with other rows."""
+    eta_prior, wide: of over-dispersed answers (overdispersion.py) the parameter b of the prior Beta(1, b) (posterior.py), and the fits whose profile
+    intervals bound the posterior; 0 and None: independent answers. posteriors: results that the intervals of several parameters share (posterior.py); empty in a copy with other rows."""
     function: object
     answers: Answers
     theta: np.ndarray
@@ -39,6 +40,8 @@ class Fits:
     middle: np.ndarray
     span: np.ndarray
     fixed: dict
+    eta_prior: float = 0.0
+    wide: "Fits" = None
     posteriors: dict = dataclasses.field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __len__(self):
@@ -46,7 +49,7 @@ class Fits:
 
     def rows(self, index):
         return dataclasses.replace(self, answers=self.answers.rows(index), **{name: getattr(self, name)[index] for name in (
-            "theta", "value", "done", "low", "high", "middle", "span")})
+            "theta", "value", "done", "low", "high", "middle", "span")}, wide=None if self.wide is None else self.wide.rows(index))
 
     def inner(self):
         """(m, s, guess, lapse), each (n,), on the axis of the function."""

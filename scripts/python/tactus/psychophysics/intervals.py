@@ -70,10 +70,11 @@ def posterior(fits, name, level):
     which, anchor, out = index_of(fits, name)
     if which not in (Q, T):
         return profile(fits, name, level)
-    theta = list(credible(fits, which, anchor, level, lambda w, a: profile_ends(fits, w, a, WIDE)))
+    ranges = fits if fits.wide is None else fits.wide
+    theta = list(credible(fits, which, anchor, level, lambda w, a: profile_ends(ranges, w, a, WIDE)))
     steps = np.flatnonzero(unresolved(fits, level))
     if len(steps):  # the location may be anywhere between two levels, which spreads above the smallest of the grid do not permit
-        wider = profile_ends(fits.rows(steps), which, anchor, level)
+        wider = profile_ends(ranges.rows(steps), which, anchor, level)
         theta[0][steps] = -np.inf if which == T else np.minimum(theta[0][steps], wider[0])
         theta[1][steps] = np.maximum(theta[1][steps], wider[1])
     with np.errstate(divide="ignore"):

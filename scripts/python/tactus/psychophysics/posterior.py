@@ -4,11 +4,14 @@ Research 122:105).
 Priors: flat over the location (or the derived point), flat over the logarithm of the spread within SPREAD, flat over the lapse rate within its bounds,
 Beta(1, 10) over a fitted guess rate. For a location and a scale these priors give intervals with the nominal coverage (Welch and Peers 1963, JRSS B
 25:318). Grid and nodes cover the wide profile interval, so that they resolve the narrow likelihood of many trials.
+
+Answers may be over-dispersed (overdispersion.py): then the likelihood is beta-binomial, and it is integrated over eta, the root of the correlation of two answers, with the
+prior Beta(1, b) on eta (Schuett et al. 2016, who use b = 10). The intervals then include the uncertainty of the dispersion.
 """
 import math
 
 import numpy as np
-from scipy.special import roots_legendre
+from scipy.special import gammaln, roots_legendre
 
 from tactus.psychophysics.functions import GUESS_PRIOR
 from tactus.psychophysics.likelihood import GUESS, LAPSE, LEAST_P, Q, T
@@ -18,6 +21,8 @@ CELLS = (49, 33)           # of the grid over location and spread; design
 NODES = 6                  # of each rate, at most 1.3 standard deviations apart; design
 WIDE = 0.9998              # level of the profile interval that grid and nodes span; design
 AT_ONCE = 3_000_000        # probabilities in memory; design
+ETA_MOST, ETA_NODES = 0.75, 10  # eta of the integral, from 0; its Gauss-Legendre nodes; design
+LOGITS = np.linspace(-14, 14, 1401)  # of the probabilities of a table, between which its entries are linear; design
 
 
 def rate_nodes(fits, rate, profile_range):
@@ -47,11 +52,48 @@ def marginals(fits, anchor, q_range, t_range, nodes):
     return q, t, joint / joint.sum(axis=(1, 2), keepdims=True)
 
 
+def eta_nodes(prior):
+    """(eta (e,), log weights (e,)) of the prior Beta(1, prior)."""
+    x, w = roots_legendre(ETA_NODES)
+    eta = ETA_MOST * (1 + x) / 2
+    return eta, np.log(w) + (prior - 1) * np.log1p(-eta)
+
+
+def beta_binomial_tables(eta, yes, total):
+    """(e, c, u) log likelihood of c pairs of counts (c,) at the probabilities of LOGITS. eta^2 = 1 / (nu + 1) is the correlation of two answers; nu p and
+    nu (1 - p) are the parameters of the beta distribution."""
+    p = 1 / (1 + np.exp(-LOGITS))
+    nu = (1 / eta**2 - 1)[:, None, None]
+    yes, total, a, b = yes[:, None], total[:, None], nu * p, nu / (1 + np.exp(LOGITS))
+    return gammaln(yes + a) - gammaln(a) + gammaln(total - yes + b) - gammaln(b) - gammaln(total + nu) + gammaln(nu)
+
+
+class OverDispersedAnswers:
+    """Log likelihood of answers (m, k), for each node of eta."""
+
+    def __init__(self, yes, total, prior):
+        eta, self.log_weights = eta_nodes(prior)
+        pairs, index = np.unique(np.stack([yes.ravel(), total.ravel()], axis=1), axis=0, return_inverse=True)
+        self.tables = beta_binomial_tables(eta, pairs[:, 0], pairs[:, 1])
+        self.index = index.reshape(yes.shape)[:, None, None, :]
+
+    def integrated(self, p):
+        """(m, i, j) for probabilities (m, i, j, k)."""
+        place = np.clip((np.log(p) - np.log1p(-p) - LOGITS[0]) / (LOGITS[1] - LOGITS[0]), 0, len(LOGITS) - 1.001)
+        low = place.astype(int)
+        share, found = place - low, None
+        for table, weight in zip(self.tables, self.log_weights):
+            value = weight + ((1 - share) * table[self.index, low] + share * table[self.index, low + 1]).sum(axis=-1)
+            found = value if found is None else np.logaddexp(found, value)
+        return found
+
+
 def integrated(fits, rows, anchor, q, t, nodes):
     """Likelihood (m, i, j), integrated over the nodes of the rates (guess, lapse), relative to the largest of each set."""
     f = fits.function
     z, yes, total = (a[rows][:, None, None, :] for a in (fits.answers.z, fits.answers.yes, fits.answers.total))
     total_log = None
+    dispersed = OverDispersedAnswers(fits.answers.yes[rows], fits.answers.total[rows], fits.eta_prior) if fits.eta_prior else None
     for guess, of_guess in nodes[0]:
         guess = guess[rows][:, None, None, None]
         offset = 0.0 if anchor is None else f.anchor(anchor, guess)
@@ -59,7 +101,8 @@ def integrated(fits, rows, anchor, q, t, nodes):
         for lapse, of_lapse in nodes[1]:
             a, b = f.rates(guess, lapse[rows][:, None, None, None])
             p = np.clip(a + b * core, LEAST_P, 1 - LEAST_P)
-            value = (of_guess + of_lapse)[rows][:, None, None] + (yes * np.log(p) + (total - yes) * np.log1p(-p)).sum(axis=-1)
+            of_answers = dispersed.integrated(p) if dispersed else (yes * np.log(p) + (total - yes) * np.log1p(-p)).sum(axis=-1)
+            value = (of_guess + of_lapse)[rows][:, None, None] + of_answers
             total_log = value if total_log is None else np.logaddexp(total_log, value)
     return np.exp(total_log - total_log.max(axis=(1, 2), keepdims=True))
 

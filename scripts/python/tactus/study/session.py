@@ -113,10 +113,14 @@ class Session:
     # Questions to the participant.
 
     def ask(self, question, trial=None):
-        """Publishes a question and waits for its answer, without a time limit."""
-        progress = texts.first_bytes(texts.fill(self.study.phrases["progress"], done=self.plan.done, trials=self.plan.expected_trials), texts.LONGEST_LINE)
+        """Publishes a question and waits for its answer, without a time limit. A text longer than a screen is shown on several; the last one asks."""
+        *before, last = texts.screens(question["text"])
+        for text in before:
+            self.read(text)
+        progress = texts.fill(self.study.phrases["progress"], done=self.plan.done, trials=self.plan.expected_trials)[:texts.LONGEST_LINE]
         self.runner.answer = self.runner.asked = None
-        self.runner.send(question={**question, "progress": progress, "trial": trial.number if trial else 0, "condition": texts.first_bytes(trial.condition.id, texts.LONGEST_LINE) if trial else ""})
+        self.runner.send(question={**question, "text": last, "hint": self.study.phrases[texts.HINTS[question["kind"]]], "progress": progress, "trial": trial.number if trial else 0,
+                                   "condition": trial.condition.id[:texts.LONGEST_LINE] if trial else ""})
         while not self.runner.wait_for(lambda: self.runner.answer is not None or (self.participant and self.runner.asked is not None), 1):
             self.cluster.check()
         return self.runner.answer

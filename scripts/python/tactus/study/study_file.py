@@ -165,11 +165,11 @@ class Reading:
         return text
 
     def fits(self, element, text, choices=()):
-        """Refuses a text whose message would be too large, with the longest word that may be filled in for a sense."""
-        longest = max((self.phrases[sense] for sense in texts.SPOKEN), key=lambda word: len(word.encode()))
-        filled = [texts.fill(part, a=longest, b=longest) for part in (text, *choices)]
-        if reason := texts.too_large(filled[0], filled[1:]):
-            self.refuse(element, f"the text of {element.tag} {reason}")
+        """Refuses a choice that is too long with the longest word that may be filled in for a sense."""
+        longest = max((self.phrases[sense] for sense in texts.SPOKEN), key=len)
+        for choice in choices:
+            if reason := texts.wrong(texts.fill(choice, a=longest, b=longest), texts.LONGEST_CHOICE):
+                self.refuse(element, f"the choice {choice} with the word {longest} filled in {reason}")
         return text
 
     def read_phrases(self, elements):
@@ -177,14 +177,12 @@ class Reading:
         found = dict(texts.PHRASES)
         for e in elements:
             of = e.get("of")
-            text = self.words(e, texts.LONGEST_CHOICE if of in texts.SPOKEN else texts.LONGEST_TEXT)
+            text = self.words(e, texts.LONGEST_CHOICE if of in texts.SPOKEN else texts.LONGEST_LINE if of in texts.HINTS.values() else texts.LONGEST_TEXT)
             lacks = [name for name in texts.FILLED_IN.get(of, ()) if "{" + name + "}" not in text]
             if lacks:
                 self.refuse(e, f"the phrase of {of} lacks {{{lacks[0]}}}, which is filled in; write it where the number belongs")
-            if of == "progress" and len(texts.fill(text, done="99999", trials="99999").encode()) > texts.LONGEST_LINE:
-                self.refuse(e, f"the phrase of progress has more than {texts.LONGEST_LINE} bytes with its numbers; shorten it")
-            if reason := texts.too_large(text):
-                self.refuse(e, f"the phrase of {of} {reason}")
+            if of == "progress" and len(texts.fill(text, done="99999", trials="99999")) > texts.LONGEST_LINE:
+                self.refuse(e, f"the phrase of progress has more than {texts.LONGEST_LINE} characters with its numbers; shorten it")
             found[of] = text
         return found
 
@@ -211,7 +209,7 @@ class Reading:
         blocks, tolerance, margin, base = find("blocks"), find("tolerance"), find("margin"), find("base")
         return Study(
             name=root.get("name"), path=self.path, sha256=self.sha256, scene=self.scene() if self.with_scene else None, task=task, seed=int(root.get("seed", "1")),
-            instructions=tuple(self.fits(e, self.words(e)) for e in root.findall("instructions")), phrases=self.phrases,
+            instructions=tuple(self.words(e) for e in root.findall("instructions")), phrases=self.phrases,
             base_delay_ms=self.quantity(base, "delay", quantities.OPERATORS["delay"], 100.0),
             base=tuple(self.element(e) for e in (base if base is not None else ())),
             conditions=tuple(found), procedure=procedure_element.read(self, find("procedure"), kind in YES_OR_NO, kind, found), response=kind, question=question, choices=choices,

@@ -1,19 +1,21 @@
-"""Texts that a study shows to its participant, in any language: their characters, their length, and their size in a message."""
+"""Texts that a study shows to its participant, in any language: their characters, their length, and their screens."""
 import re
 import unicodedata
 
 from tactus.refusal import Refusal
 
-LONGEST_TEXT, LONGEST_CHOICE, LONGEST_LINE = 600, 40, 64  # characters: lcmtypes/types/control/question_t.lcm
-# A question and its choices are one message of at most 1400 bytes (lcmtypes/channels.h, kMaxMessageBytes). Besides its texts it has its fingerprint (8 bytes), the header
-# (48), id, kind, count, three numbers and the trial (41); each text has a length of 4 bytes and a final zero. Name of the condition and progress have 64 bytes each.
-MESSAGE_BYTES, OTHER_BYTES, TEXT_BYTES = 1400, 8 + 48 + 41, 5
+LONGEST_SCREEN, LONGEST_CHOICE, LONGEST_LINE = 600, 40, 64  # characters: lcmtypes/types/control/question_t.lcm
+LONGEST_TEXT = 6000  # characters; design: ten screens. A longer text is divided into several elements
 SPOKEN = {"haptic": "touch", "audio": "sound", "visual": "picture", "thermal": "warmth"}
 # Texts that the session shows by itself; <phrase of=""> of a study file replaces them. The words in braces are filled in.
-PHRASES = {**SPOKEN, "progress": "{done} of {trials} done",
+# A hint names the keys below a question; empty: the window and the page write it in English.
+HINTS = {"read": "hint_read", "choice": "hint_choice", "number": "hint_number"}
+PHRASES = {**SPOKEN, **dict.fromkeys(HINTS.values(), ""), "progress": "{done} of {trials} done",
            "break": "Block {block} of {blocks} is done. Take a break of {seconds} s or longer; continue when you are ready.",
            "end": "That was the last one. Thank you!"}
 FILLED_IN = {"progress": ("done", "trials"), "break": ("block", "blocks", "seconds")}
+# The end of a sentence: a stop before a blank, a stop of Chinese and Japanese, a danda of Indic scripts.
+SENTENCE_END = re.compile("[.!?\u061f\u06d4\u2026](?= )|[\u3002\uff01\uff1f]|[\u0964\u0965]")
 
 
 def one_line(text):
@@ -34,18 +36,27 @@ def wrong(text, longest):
     return None
 
 
-def message_bytes(text, choices=()):
-    """The largest size of the message that asks this, in bytes."""
-    return OTHER_BYTES + 2 * (LONGEST_LINE + TEXT_BYTES) + sum(len(part.encode()) + TEXT_BYTES for part in (text, *choices))
+def place_to_divide(text):
+    """Number of characters, 1 to LONGEST_SCREEN, of the first screen of a longer text: to the end of the last sentence if that fills half of the screen, else to
+    the last blank, else as many as fit without a cut between a letter and its marks."""
+    screen = text[:LONGEST_SCREEN + 1]  # the blank after a full screen belongs to it
+    sentences = [found.end() for found in SENTENCE_END.finditer(screen) if found.end() <= LONGEST_SCREEN]
+    if sentences and sentences[-1] >= LONGEST_SCREEN // 2:
+        return sentences[-1]
+    if (blank := screen.rfind(" ")) > 0:
+        return blank
+    joined = lambda at: unicodedata.category(text[at])[0] == "M" or "\u200d" in text[at - 1:at + 1]
+    return next((at for at in range(LONGEST_SCREEN, LONGEST_SCREEN // 2, -1) if not joined(at)), LONGEST_SCREEN)
 
 
-def too_large(text, choices=()):
-    """Why one message cannot hold a text with its choices, in one clause; None: it can."""
-    over = message_bytes(text, choices) - MESSAGE_BYTES
-    if over <= 0:
-        return None
-    found = sum(len(part.encode()) for part in (text, *choices))
-    return f"{'with its choices has' if choices else 'has'} {found} bytes in UTF-8, and one screen holds {found - over}; shorten it, or divide it into several"
+def screens(text):
+    """The text in parts of at most LONGEST_SCREEN characters, which are shown one after the other."""
+    parts = []
+    while len(text) > LONGEST_SCREEN:
+        at = place_to_divide(text)
+        parts.append(text[:at].rstrip(" "))
+        text = text[at:].lstrip(" ")
+    return [*parts, text] if text or not parts else parts
 
 
 def fill(phrase, **values):
@@ -53,11 +64,6 @@ def fill(phrase, **values):
     for name, value in values.items():
         phrase = phrase.replace("{" + name + "}", str(value))
     return phrase
-
-
-def first_bytes(text, most):
-    """The longest beginning of at most this number of bytes in UTF-8 that ends between two characters."""
-    return text.encode()[:most].decode("utf-8", "ignore")
 
 
 def participant_name(text):

@@ -232,7 +232,7 @@ namespace {
 // Two triangles of two materials, each with its picture.
 const char* kTwoObj =
     "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 "
-    "3/3\nusemtl blue\nf 1/1 2/2 4/3\n";
+    "3/3\nusemtl blue\nf 2/2 1/1 4/3\n";
 const char* kTwoMtl =
     "newmtl red\nKd 0.5 0.25 0.125\nmap_Kd a.png\nnewmtl blue\nKd 0.25 0.5 1\nmap_Kd b.png\nnorm n.png\n";
 const std::string kMesh = "<geometry><mesh><uri>two.obj</uri></mesh></geometry>";

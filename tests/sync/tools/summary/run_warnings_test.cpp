@@ -67,6 +67,29 @@ TEST_CASE("A process that starts after the world is named, unless the log begins
   }
 }
 
+TEST_CASE("The ticks that a node misses in the first second of the world are counted apart from those before and after") {
+  RunLog log;
+  std::int64_t missed = 0;
+  for (int ms = 0; ms <= 6000; ms += 100) {
+    if (ms >= 3000) world(log, ms, ms + 80, ms - 3000);
+    // 40 while it prepares, 2 in the first second, 7 later.
+    missed += ms == 1000 ? 40 : ms == 3500 ? 2 : ms == 4500 ? 7 : 0;
+    log.health("visual_node", "visual", ms, 60, 1, ms < 2800 ? node_health_t::WAITING : node_health_t::RUNNING, missed);
+  }
+  const NodeSummary n = log.summary().nodes().at("visual_node");
+  CHECK(n.missed_ticks == 49);
+  REQUIRE(n.missed_first_second);
+  CHECK(*n.missed_first_second == 2);
+  CHECK_THAT(to_text(log.summary()), Contains("2 of the missed in the first second of the world"));
+  CHECK_THAT(to_json(log.summary()), Contains("\"missed_first_second\": 2"));
+  RunLog midway;
+  for (int ms = 0; ms <= 2000; ms += 100) {
+    world(midway, ms, ms + 80, 5000 + ms);
+    midway.health("visual_node", "visual", ms, 60, 1, node_health_t::RUNNING, ms);
+  }
+  CHECK_FALSE(midway.summary().nodes().at("visual_node").missed_first_second);
+}
+
 TEST_CASE("A silent modality is named when events happened, and is not when a profile silences it") {
   for (const bool has_scene : {false, true}) {
     RunLog log;
