@@ -130,7 +130,7 @@ TEST_CASE("A model.config outside of the folder of a scene is not read, wherever
   Stranger stranger;
   stranger.file.write("chair/model.config", "<model><sdf version='1.9'>../scene/ball.sdf</sdf></model>");
   stranger.file.write("scene/.hidden/model.config", "<model><sdf version='1.9'>../ball.sdf</sdf></model>");
-  for (const std::string uri : {"../chair", ".hidden", "up/chair", (stranger.file.folder() / "chair").string()})
+  for (const std::string& uri : {std::string("../chair"), std::string(".hidden"), std::string("up/chair"), (stranger.file.folder() / "chair").string()})
     CHECK_THAT(stranger.error(world(include(uri))), Contains("s.sdf:3: ") && Contains(std::string(kOutside)));
   CHECK(stranger.error(world(include("../chair")), {.folders = {stranger.file.folder()}, .confined = false}) == "");
 }
