@@ -35,6 +35,7 @@
 #include <tactus/world_state_t.hpp>
 
 #include "lcmtypes/bump.h"
+#include "lcmtypes/generation.h"
 #include "lcmtypes/measured_modes.h"
 #include "lcmtypes/page_limits.h"
 #include "lcmtypes/plausible.h"
@@ -215,7 +216,7 @@ bool all_sane(const List& list) {
 }
 // Common to a request and its answer.
 bool sane_policy(const auto& m) {
-  return m.generation >= 0 && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
+  return between(m.generation, 0, kMaxGeneration) && between(m.policy, playout_t::ASAP, playout_t::ITOUCH2005) &&
          between(m.aligner, playout_t::FIXED, playout_t::QUANTILE) && between(m.base_ns, 0, kMaxDelay_ns) &&
          between(m.budget_ns, 0, kMaxDelay_ns) && all_sane(m.entries);
 }
@@ -261,7 +262,7 @@ bool valid(const node_health_t& m) {
          m.qualities >= m.quality && all_sane(m.inputs);
 }
 bool valid(const degradation_t& m) {
-  return sane(m.header) && m.generation >= 0 && m.start_sim_ns >= 0 && between(m.size, 0, 65536) &&
+  return sane(m.header) && between(m.generation, 0, kMaxGeneration) && m.start_sim_ns >= 0 && between(m.size, 0, 65536) &&
          page_of(m.page, m.pages, kMaxProfilePages) && m.text.size() <= 1200;
 }
 bool valid(const degraded_t& m) { return sane(m.header) && name(m.modality) && all_sane(m.decisions); }

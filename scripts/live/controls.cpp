@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <tactus/header_t.hpp>
 
+#include "lcmtypes/generation.h"
 #include "lcmtypes/vectors.h"
 #include "scripts/live/sliders.h"
 #include "sync/bus/request_reply.h"
@@ -52,7 +53,7 @@ void Controls::degrade(const DegradeRequest& sliders, std::int64_t realtime_ns, 
   sync::ProfileInForce p;
   p.text = with_sliders(in_force_ && !sliders.clear ? in_force_->text : "", sliders.senses);
   p.hash = sync::fnv1a_64(p.text.data(), p.text.size());
-  p.generation = in_force_ ? std::max(realtime_ns, in_force_->generation + 1) : realtime_ns;
+  p.generation = next_generation(in_force_ ? in_force_->generation : -1, realtime_ns);
   if (const auto map = simulation_.map(now)) p.start = std::max(sync::SimTime{}, map->to_sim(now));
   profile_ = in_force_ = p;
   profile_until_ = now + kProfileRepeatTime;

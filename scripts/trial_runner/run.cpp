@@ -18,6 +18,7 @@
 
 #include <unistd.h>
 
+#include <tactus/degradation_t.hpp>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/sim_command_t.hpp>
@@ -34,6 +35,7 @@
 #include <tactus/presented_t.hpp>
 #include <tactus/question_t.hpp>
 
+#include "lcmtypes/generation.h"
 #include "scripts/trial_runner/enforcement.h"
 #include "scripts/trial_runner/hand.h"
 #include "scripts/trial_runner/interview.h"
@@ -79,7 +81,8 @@ class TrialRunner {
         replies_(node.bus().queue<sim_reply_t>(channels::kSimReply, 64)),
         answers_(node.bus().queue<answer_t>(channels::kAnswer, 64)),
         tools_(node.bus().queue<tool_state_t>(channels::kToolState, 256)),
-        forces_(node.bus().queue<device_force_t>(channels::kDeviceForce, 64)) {
+        forces_(node.bus().queue<device_force_t>(channels::kDeviceForce, 64)),
+        degradations_(node.bus().queue<degradation_t>(channels::kDegradation, 256)) {
     if (hand) hand_.emplace(hand->first, hand->second);
     if (with_pictures) pictures_ = &node.bus().queue<picture_chunk_t>(channels::kPictureChunk, 4096, sync::Port::kBulk);
     state_.device = kTrialRunner.name;
@@ -130,7 +133,7 @@ class TrialRunner {
   void handle(const ProfileRequest& o, sync::HostTime now) {
     if (o.text.size() > sync::kMaxProfileBytes) throw std::invalid_argument("the profile is longer than 64 KiB");
     sync::ProfileInForce profile = sync::read_profile(o.text, "profile");
-    profile.generation = sync::realtime_ns();
+    profile.generation = next_generation(newest_generation_, sync::realtime_ns());
     if (const auto map = simulation_.map(now)) profile.start = std::max(sync::SimTime{}, map->to_sim(now));
     enforcement_.begin(std::move(profile));
   }
@@ -207,6 +210,8 @@ class TrialRunner {
         handle_buttons(m->message, now);
         if (const auto line = observations_.push(m->message, m->arrival)) write(*line);
       }
+    while (const auto m = degradations_.pop())
+      if (is_own_run(m->message.header)) newest_generation_ = std::max(newest_generation_, m->message.generation);
     while (const auto m = forces_.pop())
       if (is_own_run(m->message.header) && m->message.device == state_.device) force_N_ = m->message.force_N.z;
     while (pictures_) {
@@ -286,6 +291,8 @@ class TrialRunner {
   sync::Queue<answer_t>& answers_;
   sync::Queue<tool_state_t>& tools_;
   sync::Queue<device_force_t>& forces_;
+  sync::Queue<degradation_t>& degradations_;
+  std::int64_t newest_generation_ = -1;  // of all profiles
   sync::Queue<picture_chunk_t>* pictures_ = nullptr;
   std::map<std::string, NodeStatus> modalities_;
   std::map<std::int32_t, int> buttons_;  // by source

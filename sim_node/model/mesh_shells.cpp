@@ -34,7 +34,8 @@ class Groups {
   std::vector<Place> parent_;
 };
 
-// Merges vertices nearer than a tolerance, by cells of a grid that are much larger than it.
+// Merges vertices nearer than a tolerance, by cells of a grid: large enough that most vertices lie in one cell with all their
+// neighbours, small enough that a cell holds at most some hundred vertices, however many a mesh has in a small place.
 class VertexWelder {
  public:
   explicit VertexWelder(const TriangleMesh& mesh) : box_(bounds(mesh, Eigen::Isometry3d::Identity())) {
@@ -42,7 +43,7 @@ class VertexWelder {
                               std::max(box_.min().cwiseAbs().maxCoeff(), box_.max().cwiseAbs().maxCoeff());
     const double diagonal_m = box_.diagonal().norm();
     tolerance_m_ = std::max(kWeldShare * diagonal_m, std::min(rounding_m, kMaxWeldShare * diagonal_m));
-    cell_m_ = 16 * tolerance_m_;
+    cell_m_ = 4 * tolerance_m_;
   }
 
   // Index of the vertex at this place.
@@ -69,7 +70,7 @@ class VertexWelder {
     const Eigen::Array3d c = ((p - box_.min().array()) / cell_m_).floor();
     return {static_cast<std::int64_t>(c.x()), static_cast<std::int64_t>(c.y()), static_cast<std::int64_t>(c.z())};
   }
-  // A cell index is below 2^17, by kWeldShare; the distance separates vertices of cells with the same key.
+  // A cell index is below 2^18, by kWeldShare; the distance separates vertices of cells with the same key.
   static std::uint64_t key(const Cell& c) {
     return static_cast<std::uint64_t>((c[0] & 0x1fffff) | (c[1] & 0x1fffff) << 21 | (c[2] & 0x1fffff) << 42);
   }
@@ -161,6 +162,8 @@ struct Patches {
   std::vector<char> turned;  // of each triangle
   std::vector<char> one_sided;  // of each patch
   int count = 0;
+
+  bool runs_forward(const Side& side) const { return side.forward != static_cast<bool>(turned[side.triangle]); }
 };
 
 struct Neighbour {
@@ -219,26 +222,32 @@ Patches find_patches(const std::vector<Triangle>& triangles, const std::vector<S
   return patches;
 }
 
+// For each key of `turns`: the sum of its +1 and -1. Sorts `turns`, so that an edge of many triangles is fast.
+template <class Each>
+void for_each_sum(std::vector<std::pair<int, int>>& turns, Each&& each) {
+  std::sort(turns.begin(), turns.end());
+  for (Place first = 0, last = 0; first < turns.size(); first = last) {
+    int net = 0;
+    for (last = first; last < turns.size() && turns[last].first == turns[first].first; ++last) net += turns[last].second;
+    each(turns[first].first, net);
+  }
+}
+
 // Joins patches that do not close each other's edges alone: an edge of three or more triangles closes only with all of them.
 Groups join_open_patches(const std::vector<Side>& sides, const Patches& patches) {
   Groups groups(static_cast<Place>(patches.count));
-  std::vector<std::pair<int, int>> surplus;  // patch, and its sides in one direction minus those in the other
+  std::vector<std::pair<int, int>> turns;  // patch of each side, and +1 or -1 for its direction
   for_each_edge(sides, [&](Place first, Place last) {
     if (last - first < 3) return;
-    surplus.clear();
-    for (Place i = first; i < last; ++i) {
-      const int patch = patches.of[sides[i].triangle];
-      const bool forward = sides[i].forward != static_cast<bool>(patches.turned[sides[i].triangle]);
-      auto at = std::find_if(surplus.begin(), surplus.end(), [&](const auto& s) { return s.first == patch; });
-      if (at == surplus.end()) at = surplus.emplace(surplus.end(), patch, 0);
-      at->second += forward ? 1 : -1;
-    }
+    turns.clear();
+    for (Place i = first; i < last; ++i)
+      turns.emplace_back(patches.of[sides[i].triangle], patches.runs_forward(sides[i]) ? 1 : -1);
     int open = -1;
-    for (const auto& [patch, net] : surplus) {
-      if (net == 0) continue;
+    for_each_sum(turns, [&](int patch, int net) {
+      if (net == 0) return;
       if (open >= 0) groups.join(static_cast<Place>(open), static_cast<Place>(patch));
       open = patch;
-    }
+    });
   });
   return groups;
 }
@@ -254,32 +263,29 @@ MeshShells shells_of(const TriangleMesh& mesh) {
   const Patches patches = find_patches(triangles, sides, result.vertices);
   Groups groups = join_open_patches(sides, patches);
   std::vector<int> shell_of_group(static_cast<Place>(patches.count), -1);
-  const auto shell_of = [&](Place triangle) -> MeshShell& {
+  const auto shell_of = [&](Place triangle) {
     int& shell = shell_of_group[groups.of(static_cast<Place>(patches.of[triangle]))];
     if (shell < 0) shell = static_cast<int>(result.shells.size()), result.shells.emplace_back();
-    return result.shells[static_cast<Place>(shell)];
+    return shell;
   };
   for (Place t = 0; t < triangles.size(); ++t) {
     const auto [a, b, c] = triangles[t];
-    MeshShell& shell = shell_of(t);
+    MeshShell& shell = result.shells[static_cast<Place>(shell_of(t))];
     shell.triangles.push_back(patches.turned[t] ? Triangle{a, c, b} : Triangle{a, b, c});
     shell.source.push_back(source[t]), shell.turned.push_back(patches.turned[t]);
     shell.one_sided = shell.one_sided || patches.one_sided[static_cast<Place>(patches.of[t])];
     result.turned_triangles += patches.turned[t];
   }
-  std::vector<std::pair<MeshShell*, int>> surplus;
+  std::vector<std::pair<int, int>> turns;
   for_each_edge(sides, [&](Place first, Place last) {
-    surplus.clear();
-    for (Place i = first; i < last; ++i) {
-      MeshShell* shell = &shell_of(sides[i].triangle);
-      auto at = std::find_if(surplus.begin(), surplus.end(), [&](const auto& s) { return s.first == shell; });
-      if (at == surplus.end()) at = surplus.emplace(surplus.end(), shell, 0);
-      at->second += sides[i].forward != static_cast<bool>(patches.turned[sides[i].triangle]) ? 1 : -1;
-    }
-    for (const auto& [shell, net] : surplus)
+    turns.clear();
+    for (Place i = first; i < last; ++i)
+      turns.emplace_back(shell_of(sides[i].triangle), patches.runs_forward(sides[i]) ? 1 : -1);
+    for_each_sum(turns, [&](int shell, int net) {
       for (int n = 0; n < std::abs(net); ++n)
-        shell->rim.push_back(net > 0 ? RimEdge{sides[first].low, sides[first].high}
-                                     : RimEdge{sides[first].high, sides[first].low});
+        result.shells[static_cast<Place>(shell)].rim.push_back(net > 0 ? RimEdge{sides[first].low, sides[first].high}
+                                                                       : RimEdge{sides[first].high, sides[first].low});
+    });
   });
   return result;
 }

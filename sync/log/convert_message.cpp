@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <stdexcept>
 #include <utility>
 
 #include "lcmtypes/fields.h"
@@ -58,6 +59,12 @@ struct MessageConverter::Reader {
 
 MessageConverter::MessageConverter(std::vector<RecordedType> recorded)
     : recorded_(std::move(recorded)), changed_(renamed_types(recorded_)) {
+  // A second description would belong to other fields than those that were compared.
+  for (std::size_t i = 0; i < recorded_.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (recorded_[i].name == recorded_[k].name || recorded_[i].fingerprint == recorded_[k].fingerprint)
+        throw std::runtime_error("describes the message type " + recorded_[i].name + " twice in LOG_TYPES, so it cannot be converted; " +
+                                 "use the recording as the recorder wrote it");
   for (const RecordedType& type : recorded_)
     if (const MessageType* now = message_type(type.name))
       if (auto places = matching_fields(type, *now)) places_[type.name] = std::move(*places);

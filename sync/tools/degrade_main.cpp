@@ -4,8 +4,10 @@
 #include <map>
 #include <set>
 #include <tactus/contact_frame_t.hpp>
+#include <tactus/degradation_t.hpp>
 #include <tactus/node_health_t.hpp>
 
+#include "lcmtypes/generation.h"
 #include "sync/bus/bus.h"
 #include "sync/bus/bus_arguments.h"
 #include "sync/degradation/profile_exchange.h"
@@ -21,6 +23,9 @@ namespace {
 
 constexpr sync::Nanoseconds kListen{500'000'000};      // health comes every 100 ms, the clock of the simulation every ms
 constexpr sync::Nanoseconds kTimeout{2'000'000'000};  // health comes every 100 ms
+// A profile in force that is dated further ahead is of a clock that ran ahead, and is replaced all the same. Of two profiles that are
+// requested at the same time the later one holds.
+constexpr std::int64_t kClocksDiffer_ns = 1'000'000'000;
 constexpr sync::Nanoseconds kRepeat{100'000'000};      // a datagram may be lost
 
 std::string joined(const std::set<std::string>& names) {
@@ -49,6 +54,7 @@ int main(int argc, char** argv) try {
   sync::Bus bus(sync::Identity::fresh("degrade", run_id), bus_options);
   auto& frames = bus.queue<contact_frame_t>(channels::kContacts, 4096);
   auto& healths = bus.queue<node_health_t>(channels::kNodeHealth, 1024);
+  auto& profiles = bus.queue<degradation_t>(channels::kDegradation, 256);
   sync::SimClockTracker simulation(bus.clocks());
   std::map<std::string, bool> senses;  // node -> whether it has adopted the profile
   std::set<std::string> modalities;    // that are present
@@ -79,6 +85,9 @@ int main(int argc, char** argv) try {
     }
     bus.wait(kRepeat / 4);
     bus.drain(sync::host_now());
+    while (const auto m = profiles.pop())
+      if (m->message.header.run_id == run_id && m->message.hash != profile.hash && m->message.generation > sync::realtime_ns() + kClocksDiffer_ns)
+        profile.generation = std::max(profile.generation, next_generation(m->message.generation, sync::realtime_ns()));
     while (const auto m = healths.pop())
       if (m->message.header.run_id == run_id && !m->message.modality.empty())
         senses[m->message.node] = m->message.profile == profile.hash;

@@ -9,6 +9,7 @@
 #include <tactus/tag_request_t.hpp>
 
 #include "lcmtypes/channels.h"
+#include "lcmtypes/generation.h"
 #include "sync/bus/bus.h"
 #include "sync/degradation/profile.h"
 #include "sync/bus/identity.h"
@@ -131,6 +132,18 @@ TEST_CASE("Sliders start from the profile in force, and show the newest profile"
     CHECK(PageFixture::all(p.profiles).size() < 25);
     p.run_for(3);
     CHECK(PageFixture::all(p.profiles).empty());
+  }
+  SECTION("a profile of any date is replaced") {
+    p.in_force(R"(<profile name="ahead"/>)", kMaxGeneration - 1);
+    p.controls.degrade({{{"audio", {80, 0, 0}}}, false}, kRealtime_ns, p.now);
+    p.run_for(0.05);
+    const auto next = PageFixture::all(p.profiles);
+    REQUIRE_FALSE(next.empty());
+    CHECK(next.back().generation == kMaxGeneration);
+    p.in_force(R"(<profile name="forged"/>)", INT64_MAX);  // refused where it enters
+    CHECK(p.controls.profile()->hash == next.back().hash);
+    p.controls.degrade({{{"audio", {90, 0, 0}}}, false}, kRealtime_ns, p.now);
+    CHECK(p.controls.profile()->generation == kMaxGeneration);
   }
   SECTION("a later profile of another sender replaces it") {
     p.in_force(R"(<profile name="later"><degrade modality="haptic" off="true"/></profile>)", kRealtime_ns + 9999);

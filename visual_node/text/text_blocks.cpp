@@ -9,6 +9,8 @@
 namespace tactus::visual {
 namespace {
 
+constexpr char32_t kLastCharacter = 0x10ffff;  // Unicode 15.0, 2.4
+
 void require(bool right, const char* clause) {
   if (!right) throw std::runtime_error(clause);
 }
@@ -82,6 +84,7 @@ DrawnText unpack_drawn_text(std::span<const std::uint8_t> bytes) {
             kWrong);
   }
   text.missing = in.get_list<std::vector<char32_t>>();
+  for (const char32_t c : text.missing) require(c <= kLastCharacter, kWrong);
   require(in.at_end(), kWrong);
   return text;
 }

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "lcmtypes/utf8.h"
+
 namespace tactus::sim::sdf {
 namespace {
 
@@ -43,14 +45,14 @@ std::string path_of(const Element& element) {
   std::string path;
   for (const Element* each = &element; each; each = each->parent) {
     std::string step = "/" + std::string(each->name);
-    if (const Attribute* name = each->attribute("name")) step += "[@name=\"" + std::string(name->value.substr(0, kMaxQuotedName)) + "\"]";
+    if (const Attribute* name = each->attribute("name")) step += "[@name=\"" + std::string(first_bytes(name->value, kMaxQuotedName)) + "\"]";
     path.insert(0, step);
   }
   return path;
 }
 
 std::string one_line(std::string text) {
-  if (text.size() > kMaxMessage) text = text.substr(0, kMaxMessage) + "...";
+  if (text.size() > kMaxMessage) text = std::string(first_bytes(text, kMaxMessage)) + "...";
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
   return text;

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 constexpr int kMaxIncludes = 100'000;
 constexpr std::size_t kMaxChain = 32;  // files that include each other one below the other
 constexpr std::uintmax_t kMaxFileBytes = 16 << 20, kMaxTotalBytes = 64 << 20;
-// Elements, with their ends, and attributes. Each takes tinyxml2 about 120 bytes: these are 300 MB.
+// Elements, with their ends, attributes and comments. Each takes tinyxml2 about 120 bytes, and a text between two of them as
+// much: these are 600 MB at most.
 constexpr std::size_t kMaxParts = 2'500'000;
 constexpr std::size_t kMaxAttributes = 256;  // of an element: they are found by a search (design)
 
@@ -105,7 +106,7 @@ void SdfFiles::parse(Document& document, const std::string& included_by) {
                              std::to_string(kMaxAttributes) + " attributes: remove some");
   if ((parts_ += parts.parts) > kMaxParts)
     throw std::runtime_error(document.source.shown + ": the files of the scene have more than " +
-                             std::to_string(kMaxParts) + " elements and attributes: simplify the scene");
+                             std::to_string(kMaxParts) + " elements, attributes and comments: simplify the scene");
   tinyxml2::XMLDocument& xml = *document.xml;
   if (xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     throw std::runtime_error(sdf::where(document.source, xml.ErrorLineNum()) + ": this is not well-formed XML" +
@@ -144,8 +145,13 @@ const SdfFiles::Document& SdfFiles::scan(const fs::path& file, const std::string
     const std::string_view name = element->Value();
     count(document, element->GetLineNum(), {1, 0, depth});
     if (name == "include" && !foreign && element != document.xml->RootElement()) follow(*element, document, depth, chain);
-    for (auto* child = element->LastChildElement(); child; child = child->PreviousSiblingElement())
-      pending.push_back({child, depth + 1, foreign || sdf::is_foreign(name)});
+    // A comment counts as an element, because each include of the file passes over it. A text does not: two of them have
+    // something between them.
+    for (const tinyxml2::XMLNode* child = element->LastChild(); child; child = child->PreviousSibling())
+      if (const tinyxml2::XMLElement* inner = child->ToElement())
+        pending.push_back({inner, depth + 1, foreign || sdf::is_foreign(name)});
+      else if (!child->ToText())
+        count(document, child->GetLineNum(), {1, 0, depth});
   }
   chain.pop_back();
   return document;
@@ -201,6 +207,7 @@ const SdfFiles::Document* SdfFiles::document_of(const tinyxml2::XMLElement& incl
   }
   std::error_code error;
   if (!found.empty() && fs::is_directory(found, error)) {
+    if (!readable_.resolve(found)) throw std::runtime_error(here + ": include of \"" + uri + "\" " + kOutside);
     const auto [at, is_new] = file_of_folder_.try_emplace(found.string());
     if (is_new) at->second = sdf::file_of_model_folder(found);
     found = at->second;

@@ -94,7 +94,7 @@ class SdfFiles {
   std::vector<Skipped> skipped_;
   int includes_ = 0;
   std::uintmax_t bytes_ = 0;  // of all files
-  std::size_t parts_ = 0;     // elements and attributes of all files, at most
+  std::size_t parts_ = 0;     // of all files (xml_scan.h)
 };
 
 }  // namespace tactus::sim

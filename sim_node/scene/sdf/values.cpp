@@ -6,13 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "lcmtypes/utf8.h"
+
 namespace tactus::sim::sdf {
 namespace {
 
 constexpr std::size_t kMaxQuoted = 60;  // characters of a wrong value in a message
 
 std::string quoted(std::string_view text) {
-  return "\"" + std::string(text.substr(0, kMaxQuoted)) + (text.size() > kMaxQuoted ? "..." : "") + "\"";
+  return "\"" + std::string(first_bytes(text, kMaxQuoted)) + (text.size() > kMaxQuoted ? "..." : "") + "\"";
 }
 
 [[noreturn]] void reject_value(const Element& element, const std::string& what) {

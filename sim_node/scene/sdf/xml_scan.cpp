@@ -26,6 +26,7 @@ XmlCount count_xml(std::string_view text) {
   std::size_t at = text.find('<'), worst = 0;
   while (at < text.size()) {
     if (const std::size_t end = skipped(text, at); end != at) {
+      ++count.parts;
       at = text.find('<', end);
       continue;
     }

@@ -8,7 +8,7 @@
 namespace tactus::sim::sdf {
 
 struct XmlCount {
-  std::size_t parts = 0;            // elements and attributes
+  std::size_t parts = 0;            // elements, with their ends, attributes, and comments and the like
   std::size_t max_attributes = 0;  // of one element
   int line = 1;                     // of that element
 };

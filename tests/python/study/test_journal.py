@@ -9,12 +9,13 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 from unittest import mock
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts"
 sys.path.insert(0, str(SCRIPTS / "python"))
 from tactus.refusal import Refusal
-from tactus.study import journal, session, study_file
+from tactus.study import bids_labels, journal, session, study_file
 from tactus.study.journal import Journal
 from tactus.study.plan import Plan
 
@@ -199,6 +200,13 @@ class Damage(Folder):
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self.path.write_bytes(b"".join(map(journal.line_of, entries)))
             self.refused(f"{self.path}:{line}: ")
+
+    def test_a_deeply_nested_line_with_a_valid_checksum_is_refused(self):
+        body = '{"n": 1, "kind": ' + "[" * 100_000 + "]" * 100_000 + "}"
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.write_bytes(f'{body[:-1]}, "crc32": "{zlib.crc32(body.encode()):08x}"}}\n'.encode())
+        self.refused(f"{self.path}:1: ")
+        self.assertIsNone(bids_labels.first_entry(self.path))  # a session beside it begins all the same
 
 
 class Processes(Folder):

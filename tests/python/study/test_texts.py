@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import random
+import subprocess
 import sys
 import tempfile
 import unicodedata
@@ -234,6 +235,12 @@ class Fonts(unittest.TestCase):
         self.assertIn("no installed font covers न (U+0928 DEVANAGARI LETTER NA)", fonts.words(study_of("न?"))[0])
         (self.bin / "draw_text").unlink()
         self.assertIn("not checked", fonts.words(study_of("न?"))[0])
+
+    def test_a_check_without_an_end_is_one_sentence(self):
+        with mock.patch("tactus.study.fonts.subprocess.run", side_effect=subprocess.TimeoutExpired("draw_text", fonts.TIMEOUT_S)):
+            with self.assertRaises(Refusal) as caught:
+                fonts.words(study_of("न?"))
+        self.assertIn("not checked within", str(caught.exception))
 
 
 if __name__ == "__main__":

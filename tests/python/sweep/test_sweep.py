@@ -14,8 +14,10 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
+from tactus.refusal import Refusal
 from tactus.study import study_file, trial_table
 from tactus.sweep import chunk_file, virtual_games
+from tactus.sweep.sweep_folder import SweepFolder
 
 STUDY = f"""<?xml version="1.0" encoding="UTF-8"?>
 <study name="short" version="1" scene="{ROOT}/sim_node/scenes/dark_room_game.sdf" task="game" seed="3">
@@ -57,6 +59,17 @@ class Sweep(unittest.TestCase):
         self.assertEqual({(r["second_modality"], r["second_operator"], r["second_level"]) for r in rows}, {("", "", None), ("visual", "loss", 50)})
         self.assertTrue(all(r["missed"] == 0 and r["success"] == 0 and r["completion_time_s"] == 1 for r in rows), rows)  # 1 s is too short to win
         self.assertEqual(len({r["seed"] for r in rows}), 10)
+
+    def test_a_folder_of_a_stranger_is_no_sweep_and_is_said_so_at_once(self):
+        for kind, text in (("deep", "[" * 100_000), ("number", '{"games": 1e999, "study": "s"}'), ("list", "[]"), ("long", " " * 200_000 + "{}"), ("pipe", None)):
+            folder = self.folder / kind
+            folder.mkdir()
+            if text is None:
+                os.mkfifo(folder / "sweep.json")
+            else:
+                (folder / "sweep.json").write_text(text, encoding="utf-8")
+            with self.assertRaisesRegex(Refusal, "holds no sweep to resume"):
+                SweepFolder(folder)
 
     def test_a_sweep_killed_at_random_moments_resumes_without_lost_or_repeated_games(self):
         whole, killed = self.folder / "whole", self.folder / "killed"

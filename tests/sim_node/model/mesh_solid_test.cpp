@@ -117,6 +117,28 @@ TEST_CASE("Cubes that share an edge or a corner are two closed shells") {
     }
 }
 
+TEST_CASE("An edge of any number of triangles takes time in proportion") {
+  // A comparison of each triangle at the edge with all others takes minutes for these.
+  constexpr int kTetrahedra = 100'000;
+  constexpr double kAngle_rad = std::numbers::pi / kTetrahedra;
+  TriangleMesh fan;
+  fan.vertices = {{0, 0, 0}, {0, 0, 1}};
+  const auto around = [](double angle) { return Vector3d(std::cos(angle), std::sin(angle), 0.5); };
+  TriangleMesh closed = fan;
+  for (int i = 0; i < kTetrahedra; ++i) {
+    const int a = 2 + 2 * i, b = a + 1;
+    for (const double angle : {2 * i * kAngle_rad, (2 * i + 1) * kAngle_rad}) closed.vertices.push_back(around(angle));
+    for (const int k : {0, b, a, 1, a, b, 0, a, 1, 0, 1, b}) closed.indices.push_back(k);
+  }
+  fan.vertices = closed.vertices;
+  for (int v = 2; v < 2 + 2 * kTetrahedra; ++v)
+    for (const int k : {0, v, 1}) fan.indices.push_back(k);
+  const MeshSolid solid = solid_of(closed);
+  CHECK(solid.remark.empty());
+  CHECK(solid.integral.volume_m3 == Approx(kTetrahedra * std::sin(kAngle_rad) / 6).epsilon(1e-9));
+  CHECK(solid_of(fan).integral.volume_m3 > 0);
+}
+
 TEST_CASE("A thin diagonal rod has its own volume, not that of its bounding box") {
   TriangleMesh rod = mesh_of(box({1, 0.002, 0.002}));
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), Vector3d(1, 1, 1));

@@ -126,6 +126,15 @@ TEST_CASE("The environment names folders of scenes too, and they are searched") 
   CHECK(stranger.error(world(include("model://chair")), {.folders = {models.folder()}, .confined = false}) == "");
 }
 
+TEST_CASE("A model.config outside of the folder of a scene is not read, wherever it leads") {
+  Stranger stranger;
+  stranger.file.write("chair/model.config", "<model><sdf version='1.9'>../scene/ball.sdf</sdf></model>");
+  stranger.file.write("scene/.hidden/model.config", "<model><sdf version='1.9'>../ball.sdf</sdf></model>");
+  for (const std::string& uri : {std::string("../chair"), std::string(".hidden"), std::string("up/chair"), (stranger.file.folder() / "chair").string()})
+    CHECK_THAT(stranger.error(world(include(uri))), Contains("s.sdf:3: ") && Contains(std::string(kOutside)));
+  CHECK(stranger.error(world(include("../chair")), {.folders = {stranger.file.folder()}, .confined = false}) == "");
+}
+
 TEST_CASE("The files of a mesh stay below the folder of the scene") {
   Stranger stranger;
   stranger.file.write("m.mtl", "newmtl a\nKd 1 0 0\n");

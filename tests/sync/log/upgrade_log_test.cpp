@@ -225,6 +225,24 @@ TEST_CASE("A question of a log from before pages and hints is converted to one p
     }
 }
 
+TEST_CASE("A log that describes a type twice is refused, because the descriptions may differ") {
+  const std::string struct_line = "struct tool_constraint_t ", other = "struct touch_applied_t " + hexadecimal(kOldFingerprint) + "\n";
+  // The first description has no fields: the numbers of those of the second lie beyond it.
+  for (const std::string& added : {struct_line + hexadecimal(tool_constraint_t::getHash()) + "\n", struct_line + "0x1\n", other}) {
+    Bytes log;
+    std::int64_t number = 0;
+    for (const std::string& page : types_in_single_precision()) {
+      const std::string text = replaced(page, struct_line, added + struct_line);
+      append_event(log, number++, 10, kLogTypes, Bytes(text.begin(), text.end()));
+    }
+    tool_state_t m = tool();
+    m.constraints.resize(3);
+    m.constraint_count = 3;
+    append_event(log, number++, 20, channels::kToolState, in_single_precision(m));
+    CHECK_THROWS_AS(upgraded(log), std::runtime_error);
+  }
+}
+
 TEST_CASE("A conversion keeps channels, stamps, order and all other bytes") {
   const Bytes log = old_log("int8_t touch_how");
   const Result result = upgraded(log);

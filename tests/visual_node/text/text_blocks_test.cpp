@@ -55,6 +55,8 @@ TEST_CASE("An answer whose picture or rows do not fit each other is refused") {
   CHECK(refused([](DrawnText& t) { t.blocks[0].rows = -1; }));
   CHECK(refused([](DrawnText& t) { t.blocks[1].first_row = kMaxTextRows; }));
   CHECK(refused([](DrawnText& t) { t.blocks[1].line_rows = 4; }));
+  CHECK_FALSE(refused([](DrawnText& t) { t.missing = {U'\U0010ffff'}; }));
+  CHECK(refused([](DrawnText& t) { t.missing = {static_cast<char32_t>(0x110000)}; }));
 }
 
 TEST_CASE("Any bytes are read as a request or an answer, or refused with one clause") {

@@ -185,4 +185,19 @@ TEST_CASE("draw_text --check prints the characters without a font, and refuses t
   CHECK(said("ok\n" + kSamples[2].text + "\n\n") == "");
   CHECK(said(kUncovered + "\nb" + kUncovered) == "U+12F90\nU+10FFFD\n");
   CHECK_THAT(said("\xff"), Catch::StartsWith("draw_text: the text cannot be checked: it is not UTF-8"));
+  CHECK_THAT(said(std::string(2 << 20, 'a')), Catch::StartsWith("draw_text: the text cannot be checked: the text has more than 1 MiB"));
+}
+
+TEST_CASE("draw_text --check draws in a second process, which is confined") {
+  namespace fs = std::filesystem;
+  // Without draw_text in its folder, a copy under another name finds no program that draws.
+  const fs::path folder = fs::temp_directory_path() / ("tactus_draw_text_copy." + std::to_string(getpid()));
+  fs::create_directory(folder);
+  fs::copy_file(fs::read_symlink("/proc/self/exe").parent_path() / "draw_text", folder / "copy");
+  FILE* const pipe = popen(("echo \u00e4 | env -u TACTUS_BIN " + (folder / "copy").string() + " --check 2>&1").c_str(), "r");
+  std::string output;
+  for (int c; (c = std::fgetc(pipe)) != EOF;) output += static_cast<char>(c);
+  CHECK(pclose(pipe) != 0);
+  fs::remove_all(folder);
+  CHECK_THAT(output, Catch::Contains((folder / "draw_text").string() + ", which reads such files, is missing"));
 }

@@ -7,13 +7,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
-#include <iterator>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 
 #include "lcmtypes/utf8.h"
 #include "sync/sandbox/reader_program.h"
+#include "visual_node/text/confined_text.h"
 #include "visual_node/text/typeset/typesetter.h"
 
 namespace {
@@ -42,18 +43,28 @@ std::vector<std::filesystem::path> font_folders() {
   return folders;
 }
 
+// At most kMaxInputBytes + 1: a longer text is refused, and never read as a whole.
+std::string read_text() {
+  std::string text(kMaxInputBytes + 1, '\0');
+  std::cin.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(std::cin.gcount()));
+  return text;
+}
+
+// The text of a study may be that of a stranger, so that a second, confined process of this program draws it.
 int check() {
-  const std::string input{std::istreambuf_iterator<char>(std::cin), {}};
+  const std::string input = read_text();
   std::string_view rest = input;
   if (rest.size() > kMaxInputBytes) throw std::runtime_error("the text has more than 1 MiB; give less");
-  visual::Typesetter typesetter;
+  visual::ConfinedText text;
+  std::set<char32_t> known;
   std::vector<char32_t> missing;
   while (!rest.empty()) {
     std::string_view piece = first_bytes(rest.substr(0, rest.find('\n')), visual::kMaxTextBytes);
     const visual::TextRequest request{
         {{std::string(piece), 32, visual::kMaxTextWidth_px, visual::TextEdge::kNatural}}, true};
-    for (const char32_t c : typesetter.draw(request).missing)
-      if (std::find(missing.begin(), missing.end(), c) == missing.end()) missing.push_back(c);
+    for (const char32_t c : text.draw(request).missing)
+      if (known.insert(c).second) missing.push_back(c);
     rest.remove_prefix(
         std::min(rest.size(), piece.size() + (rest.size() > piece.size() && rest[piece.size()] == '\n')));
   }

@@ -26,7 +26,10 @@ def uncovered(lines):
         return []
     if not (BIN / "draw_text").is_file():
         return None
-    done = subprocess.run([BIN / "draw_text", "--check"], input="\n".join(lines).encode(), capture_output=True, timeout=TIMEOUT_S, check=False)
+    try:
+        done = subprocess.run([BIN / "draw_text", "--check"], input="\n".join(lines).encode(), capture_output=True, timeout=TIMEOUT_S, check=False)
+    except subprocess.TimeoutExpired:
+        raise Refusal(f"the fonts for the texts of the study are not checked within {TIMEOUT_S} s; shorten the texts") from None
     if done.returncode:
         said = done.stderr.decode(errors="replace").strip().splitlines() or [f"draw_text: ended with {done.returncode}"]
         raise Refusal(f"{said[-1]}; {packages_remedy('fonts')} and {remedy()}")

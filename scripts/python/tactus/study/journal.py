@@ -89,7 +89,10 @@ def entry_of(line, number):
         raise ValueError("the line is not of a journal, or incomplete")
     if tail[:8] != b"%08x" % zlib.crc32(head + b"}"):
         raise ValueError("the line does not match its checksum: it was damaged or edited")
-    entry = json.loads(head + b"}")
+    try:
+        entry = json.loads(head + b"}")
+    except RecursionError:
+        raise ValueError("its lists are nested too deeply") from None
     if entry.get("n") != number:
         raise ValueError(f"the line has number {entry.get('n')}; lines are missing or repeated")
     return entry

@@ -23,7 +23,8 @@ class SoundDetector:
     def _layout(self):
         """(first byte of the samples, dtype, channels, rate) from the header; None: not written yet. Reads only the formats of audio_node."""
         if self.layout is None and self.path.exists():
-            head = self.path.read_bytes()[:4096]
+            with open(self.path, "rb") as file:
+                head = file.read(4096)
             at, form = 12, None
             while at + 8 <= len(head):
                 name, size = head[at:at + 4], int.from_bytes(head[at + 4:at + 8], "little")

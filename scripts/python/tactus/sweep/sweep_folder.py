@@ -5,10 +5,13 @@ import json
 import os
 import pathlib
 
+from tactus import own_files
 from tactus.refusal import Refusal
 from tactus.study import study_file, trial_table
 from tactus.sweep import chunk_file
 from tactus.sweep.virtual_games import games_of
+
+LARGEST_BYTES = 100_000  # of sweep.json: design, far above any
 
 
 class SweepFolder:
@@ -17,9 +20,9 @@ class SweepFolder:
     def __init__(self, path):
         self.path = pathlib.Path(path)
         try:
-            self.asked = json.loads((self.path / "sweep.json").read_text(encoding="utf-8"))
+            self.asked = json.loads(own_files.read_regular(self.path / "sweep.json", LARGEST_BYTES))
             self.games_each, study = int(self.asked["games"]), str(self.asked["study"])
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise Refusal(f"{self.path}: holds no sweep to resume; remove --resume and give a new --out") from None
         self.study = study_file.read(study)
         for file, sha256, name in ((self.study.path, self.study.sha256, "study_sha256"), (self.study.scene, scene_sha256(self.study), "scene_sha256")):
