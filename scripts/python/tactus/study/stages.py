@@ -1,4 +1,4 @@
-"""Stages of touch in study files: places in its loop at which a degradation acts (docs/touch_stages.md). "" is its input, the stage model."""
+"""Stages of touch in study files: places in its loop at which a degradation acts (docs/concepts/touch_stages.md). "" is its input, the stage model."""
 
 # Operators of quantities.OPERATORS that each stage beside the input has: sync/degradation/parse_profile.cpp and haptic_node/modality.csv.
 STAGES = {"action": ("delay", "network_delay", "jitter", "loss", "rate"),
