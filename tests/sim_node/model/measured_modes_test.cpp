@@ -1,4 +1,5 @@
 // Measured modes: the attribute of <tactus:material> that refers to them, and their transfer into the scene.
+#include <string_view>
 #include <tactus/material_def_t.hpp>
 
 #include "sim_node/model/measured_modes.h"
@@ -21,10 +22,10 @@ SceneFile scene(const std::string& table, const std::string& materials =
   return SceneFile(world(materials), {{"bell.csv", {table.begin(), table.end()}}});
 }
 
-const material_def_t& material(const WorldDef& w, const std::string& name) {
+const material_def_t& material(const WorldDef& w, std::string_view name) {
   for (const auto& m : w.materials)
     if (m.name == name) return m;
-  FAIL("no material " + name);
+  FAIL("no material " << name);
   return w.materials.front();
 }
 

@@ -1,5 +1,6 @@
 // Height maps: the attributes of <tactus:material>, and their way to the renderers.
 #include <map>
+#include <string_view>
 #include <tactus/asset_ref_t.hpp>
 #include <tactus/material_def_t.hpp>
 #include <tactus/scene_t.hpp>
@@ -27,10 +28,10 @@ std::string material_error(const std::string& attributes, const sync::Bytes& pic
   SceneFile file = scene("<tactus:material name='p' base='oak' " + attributes + "/>", picture);
   return file.load_error();
 }
-const material_def_t& material_of(const WorldDef& w, const std::string& name) {
+const material_def_t& material_of(const WorldDef& w, std::string_view name) {
   for (const auto& m : w.materials)
     if (m.name == name) return m;
-  FAIL("no material " + name);
+  FAIL("no material " << name);
   return w.materials.front();
 }
 }  // namespace
