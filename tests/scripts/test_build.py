@@ -18,15 +18,15 @@ printf 'TACTUS_TESTS:BOOL=%s\\n' $tests >build/dev/CMakeCache.txt
 printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nCMAKE_CACHEFILE_DIR:INTERNAL=%s/build/dev\\n' "$PWD" "$PWD" >>build/dev/CMakeCache.txt
 touch build/dev/build.ninja
 """
-# Compiles the files of $FILES (lines "SECONDS KIND FILE"), and prints them as ninja does; nothing with -n but the same lines.
+# Prints the lines of $FILES ("DONE ALL SECONDS TEXT") as ninja does, and fails after a line with FAILED.
 NINJA = """#!/bin/sh
-case " $* " in *" -n "*) dry=yes ;; *) dry=no; echo "ninja $*" >>"$RECORD" ;; esac
+echo "ninja $*" >>"$RECORD"
 [ -n "$FILES" ] || { echo 'ninja: no work to do.'; exit 0; }
 echo "ninja: Entering directory \\`build'"
-printf '%s\n' "$FILES" | while read -r seconds text; do
+printf '%s\n' "$FILES" | while read -r made all seconds text; do
   case $text in
-    FAILED*) [ $dry = yes ] || { echo "$text"; exit 1; } ;;
-    *) printf '%s\n' "$(printf '%s' "${NINJA_STATUS:-[1/9] }" | sed "s/%e/$seconds/")$text" ;;
+    FAILED*) echo "$text"; exit 1 ;;
+    *) printf '%s\n' "$(printf '%s' "$NINJA_STATUS" | sed "s/%f/$made/; s/%t/$all/; s/%e/$seconds/")$text" ;;
   esac
 done
 """
@@ -99,7 +99,9 @@ class Tests(Tree):
 
 
 class Progress(Tree):
-    FILES = ["1.0 Generating a.hpp"] + [f"{10 * n}.500 Building CXX object {n}.o" for n in range(1, 31)] + ["300.9 Linking CXX executable a"]
+    # CMake looks for new files first; 9 generated files take 1 s, 30 compiled ones 10 s each.
+    FILES = (["1 2 0.1 Re-checking globbed directories...", "2 2 0.9 Re-running CMake..."] + [f"{n} 40 1.0 Generating {n}.hpp" for n in range(1, 10)]
+             + [f"{9 + n} 40 {10 * n}.500 Building CXX object {n}.o" for n in range(1, 31)] + ["40 40 300.9 Linking CXX executable a"])
 
     def output(self, *files, status=0):
         environment = {**self.environment(), "FILES": "\n".join(files)}
@@ -107,19 +109,19 @@ class Progress(Tree):
         self.assertEqual(status, done.returncode, done.stderr)
         return done.stdout.splitlines()[2:], done.stderr
 
-    def test_each_minute_the_compiled_files_of_all_and_the_remaining_time_are_printed(self):
+    def test_each_minute_the_files_of_all_and_the_remaining_time_are_printed(self):
+        # After file 9 + n, 31 - n are left at 10 s each.
         lines, errors = self.output(*self.FILES)
-        self.assertEqual(["build: 6 of 30 files compiled, about 4 min left", "build: 12 of 30 files compiled, about 3 min left",
-                          "build: 18 of 30 files compiled, about 2 min left", "build: 24 of 30 files compiled, about 60 s left",
-                          "build: 30 of 30 files compiled"], lines)
+        self.assertEqual(["build: 15 of 40 files, about 5 min left", "build: 21 of 40 files, about 4 min left", "build: 27 of 40 files, about 3 min left",
+                          "build: 33 of 40 files, about 70 s left", "build: 39 of 40 files, about 10 s left"], lines)
         self.assertEqual("", errors)
 
     def test_a_build_of_less_than_a_minute_prints_no_progress(self):
-        self.assertEqual(([], ""), self.output(*self.FILES[:5]))
+        self.assertEqual(([], ""), self.output(*self.FILES[:13]))
         self.assertEqual(([], ""), self.output())
 
     def test_the_output_of_compilers_goes_to_stderr_and_a_failure_is_reported(self):
-        lines, errors = self.output(*self.FILES[:3], "3.0 FAILED: 3.o", status=1)
+        lines, errors = self.output(*self.FILES[:13], "14 40 9.0 FAILED: 3.o", status=1)
         self.assertEqual(([], "FAILED: 3.o\nbuild: the build failed; see above\n"), (lines, errors))
 
 
