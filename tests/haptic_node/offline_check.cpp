@@ -167,7 +167,7 @@ TEST_CASE("A profile degrades the rendered log, and the recorded profile applies
     CHECK(std::stoll(hit->at(3)) == kLogBegins_ns + 200'000'000 + 20'000'000);
     // The floor arrives with the first delayed model.
     CHECK(table.at(18).at(20) == "none");
-    CHECK(table.at(25).at(20) != "none");
+    CHECK(table.at(24).at(20) != "none");
   }
 }
 
@@ -193,8 +193,8 @@ TEST_CASE("Ticks before and after a gap in the recording are rendered, missing t
   const auto rows = cells_of(of.trace());
   CHECK(rows.size() < 1990);
   CHECK(rows.size() > 1500);
-  for (std::size_t i = 1; i < rows.size(); ++i) CHECK(std::stoll(rows[i].at(24)) > std::stoll(rows[i - 1].at(24)));
-  CHECK(std::stoll(rows.back().at(24)) == 1999);
+  for (std::size_t i = 1; i < rows.size(); ++i) CHECK(std::stoll(rows[i].at(25)) > std::stoll(rows[i - 1].at(25)));
+  CHECK(std::stoll(rows.back().at(25)) == 1999);
 }
 
 TEST_CASE("A log without LOG_INFO is rendered with a warning") {
@@ -214,7 +214,7 @@ TEST_CASE("A log without LOG_INFO is rendered with a warning") {
   REQUIRE(rows.size() > 1990);
   // Without LOG_INFO the beginning is known only to a latency; the forces belong to the same ticks.
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto& same = all.at(static_cast<std::size_t>(std::stoll(rows[i].at(24))));
+    const auto& same = all.at(static_cast<std::size_t>(std::stoll(rows[i].at(25))));
     for (std::size_t cell = 11; cell < 14; ++cell)
       REQUIRE(std::stod(rows[i].at(cell)) == Approx(std::stod(same.at(cell))).margin(1e-3));
   }

@@ -91,10 +91,10 @@ class Arguments(unittest.TestCase):
         with mock.patch.object(os, "statvfs", return_value=types.SimpleNamespace(f_bavail=3, f_frsize=4096)):
             self.assertIn("full", refusal_of())
 
-    def test_a_profile_goes_to_every_sense_and_to_sync_node(self):
+    def test_a_profile_goes_to_every_sense_to_sim_node_and_to_sync_node(self):
         plan = arguments.parse(["--degrade", __file__], os.getcwd())
         with_it = [name for name, words in cluster.commands(plan, 1, "").items() if "--degrade" in words]
-        self.assertEqual({*plan.senses(), "sync_node"}, set(with_it))
+        self.assertEqual({*plan.senses(), "sim_node", "sync_node"}, set(with_it))
 
     def test_a_profile_in_an_unknown_encoding_is_refused_with_one_sentence(self):
         for encoding in ("foo", "UTF-32"):
@@ -332,7 +332,8 @@ class Results(Folders):
 class Programs(unittest.TestCase):
     def test_scripts_build_builds_all_programs_of_a_run_and_a_study(self):
         from tactus.launch import virtual
-        built = (SCRIPTS / "build").read_text(encoding="utf-8").partition("targets+=(")[2].partition(")")[0].split()
+        text = (SCRIPTS / "build").read_text(encoding="utf-8")
+        built = [name for part in ("run_targets=(", '("${run_targets[@]}" ') for name in text.partition(part)[2].partition(")")[0].split()]
         for program in (*arguments.SENSES, *virtual.PROGRAMS, arguments.PLAYER_PROGRAM, "trial_runner", "play_games"):
             self.assertIn(program, built)
 
