@@ -16,9 +16,9 @@ from tactus.psychophysics.likelihood import Answers, log_likelihood, log_prior, 
 from tactus.psychophysics.posterior import ETA_MOST
 
 # The parameter b of the prior Beta(1, b) on eta (posterior.py), for up to three free parameters and for four. Design: with 10, as published, 80 % to 83 % of the intervals hold
-# the truth at rho = 0.15; tests/measure/measure_coverage compares priors by simulation.
+# the truth at rho = 0.15; tests/measure/measure_coverage shows the coverage with these.
 ETA_PRIOR = {3: 2.0, 4: 4.0}
-RANGE = 4.0  # the range of the posterior allows for this many times the design effect that is found; design
+RANGE = 2.0  # the range of the posterior allows for this many times the design effect that is found; design
 DRAWS = 300  # of the deviance; standard error of p at 0.05: 0.013; design
 
 

@@ -18,7 +18,7 @@ from tactus.psychophysics.likelihood import GUESS, LAPSE, LEAST_P, Q, T
 
 SPREAD = (0.01, 0.9)       # in spans of the levels: 3.3 spreads (5 to 95 %) are at most three spans (Schuett et al. 2016); the lower end resolves a step
 CELLS = (49, 33)           # of the grid over location and spread; design
-NODES = 6                  # of each rate, at most 1.3 standard deviations apart; design
+NODES, WIDE_NODES = 6, 9   # of each rate, at most 1.3 standard deviations apart, also in the wider range of over-dispersed answers; design
 WIDE = 0.9998              # level of the profile interval that grid and nodes span; design
 AT_ONCE = 3_000_000        # probabilities in memory; design
 ETA_MOST, ETA_NODES = 0.75, 10  # eta of the integral, from 0; its Gauss-Legendre nodes; design
@@ -32,7 +32,7 @@ def rate_nodes(fits, rate, profile_range):
         return [(fits.theta[:, rate], np.zeros(len(fits)))]
     low, high = profile_range(rate, None)
     low, high = np.minimum(low, fits.theta[:, rate]), np.maximum(np.maximum(high, fits.theta[:, rate]), low + 1e-6)
-    x, w = roots_legendre(NODES)
+    x, w = roots_legendre(WIDE_NODES if fits.eta_prior else NODES)
     nodes = [(low + (high - low) * (1 + a) / 2, np.full(len(fits), math.log(b))) for a, b in zip(x, w)]
     return [(v, u + (GUESS_PRIOR - 1) * np.log1p(-v)) for v, u in nodes] if rate == GUESS else nodes
 
