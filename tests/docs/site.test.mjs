@@ -16,7 +16,14 @@ it.page.on("request", (r) => { if (!/^(file|data|about|blob):/.test(r.url())) fo
 const at = (page) => it.page.goto(`file://${path.resolve(site, page)}`);
 try {
   await at("index.html");
-  await it.page.keyboard.press("s");  // the key of the search
+  // The key of the search has an effect as soon as the scripts of the page are ready.
+  const inSearch = () => it.page.evaluate(() => document.activeElement?.matches(".md-search__input") ?? false);
+  await until("the key s opens the search", async () => {
+    if (await inSearch()) return true;
+    await it.page.keyboard.press("s");
+    return inSearch();
+  });
+  await it.page.$eval(".md-search__input", (input) => { input.value = ""; });
   await it.page.keyboard.type("deadband");
   await until("the search finds pages", () => it.page.$$eval(".md-search-result__item", (all) => all.length > 3));
   await it.page.keyboard.press("Escape");
