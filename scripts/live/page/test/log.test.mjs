@@ -37,8 +37,14 @@ try {
     seen.places.push({ to_s, sim_ns: Number(value[1]) });
     await until("the graph also has the values before the position", async () => (await it.drawn(kVariable)) > 20 || it.drawn(kVariable));
   }
-  await it.slide("#seek", Math.round(30 * length_s) / 100);
-  await until("the event raster has marks again", async () => (await it.marks()).world > 0 || it.marks());
+  // The raster shows ten seconds. How long the run took, and so where its events are, depends on the machine.
+  let marks = {};
+  for (let to_s = 5; to_s < length_s && !(marks.world > 0); to_s += 5) {
+    await it.slide("#seek", to_s);
+    await wait(700);
+    marks = await it.marks();
+  }
+  assert.ok(marks.world > 0, `the event raster has no marks at any position: ${JSON.stringify(marks)}`);
 
   await it.page.select("#speed", "16");
   await it.click("#play");
