@@ -111,6 +111,14 @@ void IslandSolver::build(const ContactRows& rows, std::span<const int> points, c
     }
     for (int r = 0; r < 3; ++r) impulse_[3 * j + at(r)] = q.impulse[r];
   }
+  // A point moves with the points that share a body with it: most of a row is zero.
+  filled_.assign(n_, {0, n_});
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double* row = matrix_.data() + i * n_;
+    auto& [first, end] = filled_[i];
+    while (first < end && row[first] == 0) ++first;
+    while (end > first && row[end - 1] == 0) --end;
+  }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ContactPoint& p = rows.points[at(points[i])];
     Vector3d v = rows.velocity(p, velocity);
@@ -130,7 +138,7 @@ double IslandSolver::residual_of(const ContactRows& rows, std::span<const int> p
   for (std::size_t i = 0; i < n_; ++i) {
     const double* row = matrix_.data() + i * n_;
     double sum = free_[i];
-    for (std::size_t k = 0; k < n_; ++k) sum += row[k] * impulse[k];
+    for (std::size_t k = filled_[i].first; k < filled_[i].second; ++k) sum += row[k] * impulse[k];
     speed_[i] = sum;
   }
   double worst = 0;

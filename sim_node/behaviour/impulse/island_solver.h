@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim_node/behaviour/impulse/contact_rows.h"
@@ -50,6 +51,7 @@ class IslandSolver {
   // One island, 3 rows a point, row-major: velocity = matrix_ * impulse + free_.
   std::size_t n_ = 0;
   std::vector<double> matrix_, free_, speed_, impulse_, best_, trial_, step_, jacobian_;
+  std::vector<std::pair<std::size_t, std::size_t>> filled_;  // of each row of matrix_: its first column that is not zero, and one past the last
   std::vector<std::size_t> end_;  // of each row of jacobian_: one past its last column that is not zero
   Velocities unit_;
 };
