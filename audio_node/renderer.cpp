@@ -241,7 +241,8 @@ void NodeRenderer::submit_contacts(sync::HostTime now) {
   if (!slides && !sampler_->enabled()) return;
   submitted_at_ = *t;
   sampler_->set_update_interval(sync::to_seconds(every));
-  const sync::HostTime presented_at = map->to_host(*t) + std::max(delay, ahead);
+  const sync::HostTime happened = map->to_host(*t);
+  const sync::HostTime presented_at = std::max(host().endpoint().presentation_of(happened), happened + ahead);
   if (sliding_) sliding_->set_listener(listener_.at(presented_at));
   sampler_->set_listener(listener_.at(presented_at));
   // Without contact snapshots they would never end.

@@ -177,9 +177,15 @@ void Renderer::render_block(float* out, int frames, const BlockTime& time) {
 void Renderer::render_sound(float* out, int frames, sync::HostTime leaving) {
   const std::int64_t begun = clock();
   const int scraping = scrapes_.active();
-  receive_scrapes(leaving);
-  queues_.costs[0].contacts.fetch_add(scrapes_.active() - scraping, std::memory_order_relaxed);
-  scrapes_.drive(voices_, frames, leaving);
+  for (int done = 0; done < frames;) {
+    const sync::HostTime first = leaving + samples(done);
+    receive_scrapes(first);
+    const int some = frames_to_next_scrape(first, frames - done);
+    scrapes_.render(done, some, first);
+    done += some;
+  }
+  queues_.costs[0].contacts.fetch_add(std::max(0, scrapes_.active() - scraping), std::memory_order_relaxed);
+  scrapes_.drive(voices_, frames);
   voices_.render(out, frames);
   const std::int64_t computed = clock();
   const int contacts = recordings_.render(out, frames, leaving);
@@ -201,6 +207,13 @@ void Renderer::limit(float* out, int frames) {
   const double exposure = queues_.exposure.exposure_Pa2_s.load(std::memory_order_relaxed);
   queues_.exposure.exposure_Pa2_s.store(exposure + level_limiter_.take_exposure_Pa2_s(), std::memory_order_relaxed);
   queues_.exposure.gain.store(level_limiter_.gain(), std::memory_order_relaxed);
+}
+
+// Frames from this one to the first at which the waiting scrape is due.
+int Renderer::frames_to_next_scrape(sync::HostTime first, int frames_left) const {
+  if (!next_scrape_) return frames_left;
+  const double away = std::ceil(sync::to_seconds(next_scrape_->at - first) * rate_Hz_);
+  return static_cast<int>(std::clamp(away, 1.0, static_cast<double>(frames_left)));
 }
 
 // They are queued in the order of presentation; an early one waits.

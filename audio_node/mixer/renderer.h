@@ -128,6 +128,7 @@ class Renderer {
   void render_block(float* out, int frames, const BlockTime& time);
   void render_sound(float* out, int frames, sync::HostTime leaving);
   void receive_scrapes(sync::HostTime until);
+  int frames_to_next_scrape(sync::HostTime first, int frames_left) const;
   void release_strikes();
   void release_scrapes();
   void limit(float* out, int frames);

@@ -15,6 +15,7 @@ constexpr double kMaxCorrection_m = 0.005;  // design
 constexpr double kMinRamp_s = 0.002;
 // A contact without updates and without an end fades out.
 constexpr sync::Nanoseconds kUpdateTimeout{30'000'000};  // design: a few lost messages are not a gap
+constexpr double kMinInterval_s = 0.5e-3;              // design: half a step of the world's grid
 constexpr double kMaxTimeout_s = 0.5;                 // design: or twice the update interval, but at most this
 
 // Plausible range. Design: far beyond any scene, so that no number overflows.
@@ -67,9 +68,12 @@ float Scrapes::Ramp::next() {
   return value;
 }
 
+int Scrapes::frames_of(double interval_s) const { return std::max(1, static_cast<int>(std::lround(interval_s * rate_Hz_))); }
+
 void Scrapes::begin(Contact& c, const Scrape& scrape) const {
   c.now = scrape;
   c.on = c.fresh = true;
+  c.ended = false;
   c.slide = c.roll = {};
   c.patch = {};
   c.force.fill(0);
@@ -92,7 +96,7 @@ void Scrapes::update(const Scrape& scrape) {
     if (c.on && c.now.id == scrape.id) known = &c;
     if (!c.on && !free) free = &c;
   }
-  const int within = std::max(1, static_cast<int>(std::max(kMinRamp_s, scrape.update_interval_s) * rate_Hz_));
+  const int within = frames_of(std::max(kMinRamp_s, scrape.update_interval_s));
   if (scrape.ends) {
     if (known) known->slide.set_target(0, within), known->roll.set_target(0, within);
     return;
@@ -101,43 +105,53 @@ void Scrapes::update(const Scrape& scrape) {
     for (std::size_t i = 0; i < 2; ++i)
       known->sides[i].changed |= known->now.sides[i].gains != scrape.sides[i].gains;
     known->now = scrape;
+    known->ended = false;
   } else if (free && !silent) {
     begin(*(known = free), scrape);
   } else {
     return;
   }
   known->updated_at = scrape.at;
+  known->updated = true;
   known->slide.set_target(scrape.slide, within), known->roll.set_target(scrape.roll, within);
 }
 
-// Extrapolates the received place to the first of these samples; the remaining difference is corrected along the
-// track.
-Track Scrapes::follow(const ScrapeSide& received, Side& side, double since_s, bool fresh, int frames) const {
-  const double dt = 1 / rate_Hz_;
+// Extrapolates the received place to the next sample. The difference is corrected until the next scrape, by the share of the time
+// constant.
+void Scrapes::aim(const ScrapeSide& received, Side& side, double since_s, double interval_s, bool fresh) const {
   Eigen::Vector3d lag = received.place_m + since_s * received.velocity_m_s - side.place_m;
   if (fresh || lag.norm() > kMaxCorrection_m) side.place_m += lag, lag.setZero();
-  const Eigen::Vector3d step = (received.velocity_m_s + lag / kCorrection_s) * dt;
-  if (fresh) side.step_m = step;
-  const Track track{side.place_m, side.step_m, (step - side.step_m) / (2 * frames)};
+  const double share = -std::expm1(-interval_s / kCorrection_s);
+  side.target_step_m = (received.velocity_m_s + lag * (share / interval_s)) / rate_Hz_;
+  if (fresh) side.step_m = side.target_step_m;
+  side.to_target = frames_of(interval_s);
+}
+
+// The track of the next samples. Without a new scrape in time, the contact continues with its velocity.
+Track Scrapes::follow(const ScrapeSide& received, Side& side, int frames, int interval) const {
+  if (side.to_target <= 0) side.target_step_m = received.velocity_m_s / rate_Hz_, side.to_target = interval;
+  const Track track{side.place_m, side.step_m, (side.target_step_m - side.step_m) / (2 * std::max(side.to_target, frames))};
   side.place_m = track.at(frames);
-  side.step_m = step;
+  side.step_m += 2 * frames * track.bend;
+  side.to_target -= frames;
   return track;
 }
 
-void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
+void Scrapes::render(Contact& c, int offset, int frames, sync::HostTime first) const {
   const Scrape& s = c.now;
   if (first - c.updated_at >= std::max(kUpdateTimeout, sync::from_seconds(std::min(2 * s.update_interval_s, kMaxTimeout_s))) &&
       (c.slide.target != 0 || c.roll.target != 0))
     c.slide.set_target(0, static_cast<int>(kMinRamp_s * rate_Hz_)),
         c.roll.set_target(0, static_cast<int>(kMinRamp_s * rate_Hz_));
-  const double since_s = sync::to_seconds(first - s.at);
+  const double since_s = sync::to_seconds(first - s.at), interval_s = std::clamp(s.update_interval_s, kMinInterval_s, kMaxTimeout_s);
   Block slope{}, rolling{}, friction, steep;
   friction.fill(1);
   std::array<Track, 2> tracks;
   for (std::size_t i = 0; i < 2; ++i) {
     const ScrapeSide& side = s.sides[i];
     if (!side.known) continue;
-    tracks[i] = follow(side, c.sides[i], since_s, c.fresh, frames);
+    if (c.updated) aim(side, c.sides[i], since_s, interval_s, c.fresh);
+    tracks[i] = follow(side, c.sides[i], frames, frames_of(interval_s));
     if (side.relief && moves_over(side)) add_relief(side, tracks[i], frames, slope.data(), rolling.data());
     for (int n = 0; side.friction && n < frames; ++n)
       friction[static_cast<std::size_t>(n)] *=
@@ -158,10 +172,10 @@ void Scrapes::render(Contact& c, int frames, sync::HostTime first) const {
     const auto k = static_cast<std::size_t>(n);
     // The factor of a pair is the root of the product, and the strength is proportional to the root of the power.
     const float friction_gain = mapped ? std::sqrt(static_cast<float>(pair_factor(static_cast<double>(friction[k])))) : 1;
-    c.force[k] = c.slide.next() * friction_gain * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
+    c.force[static_cast<std::size_t>(offset + n)] = c.slide.next() * friction_gain * steep[k] * slope[k] + c.roll.next() * c.patch.next(rolling[k]).low;
   }
-  c.fresh = false;
-  if (c.slide.value == 0 && c.roll.value == 0 && c.slide.target == 0 && c.roll.target == 0) c.on = false;
+  c.fresh = c.updated = false;
+  c.ended = c.slide.value == 0 && c.roll.value == 0 && c.slide.target == 0 && c.roll.target == 0;
 }
 
 void Scrapes::drive(Contact& c, std::size_t i, Voices& voices, int frames) {
@@ -188,10 +202,17 @@ void Scrapes::drive(Contact& c, std::size_t i, Voices& voices, int frames) {
   side.changed = false;
 }
 
-void Scrapes::drive(Voices& voices, int frames, sync::HostTime first) {
+void Scrapes::render(int offset, int frames, sync::HostTime first) {
+  for (Contact& c : contacts_) {
+    if (offset == 0) c.force.fill(0);
+    if (c.on && !c.ended) render(c, offset, frames, first);
+  }
+}
+
+void Scrapes::drive(Voices& voices, int frames) {
   for (Contact& c : contacts_) {
     if (!c.on) continue;
-    render(c, frames, first);
+    c.on = !c.ended;
     const auto silent = [](float x) { return x == 0; };
     if (std::all_of(c.force.begin(), c.force.begin() + frames, silent)) continue;
     for (std::size_t i = 0; i < 2; ++i) drive(c, i, voices, frames);

@@ -25,9 +25,13 @@ class Scrapes {
 
   // Takes a scrape that is due. Realtime-safe: yes.
   void update(const Scrape& scrape);
-  // Drives the bodies for the next `frames` <= kMaxBlock frames, the first of which is presented at `first`. The
-  // forces remain valid until the next call. Realtime-safe: yes.
-  void drive(Voices& voices, int frames, sync::HostTime first);
+  // Computes the forces of the frames offset .. offset + frames - 1 <= kMaxBlock - 1 of a block, the first of which is presented at
+  // `first`. A block is computed in pieces that begin where scrapes fall due: the path of a contact then depends on its scrapes alone,
+  // and not on the instants of the blocks. Realtime-safe: yes.
+  void render(int offset, int frames, sync::HostTime first);
+  // Drives the bodies with the forces of a block of `frames`, whose pieces have been computed. The forces remain valid until the next
+  // call of render(). Realtime-safe: yes.
+  void drive(Voices& voices, int frames);
   int active() const;
   // Number of the oldest scrape that it holds, and whose relief it may still read. Realtime-safe: yes.
   std::optional<std::int64_t> oldest() const;
@@ -52,6 +56,9 @@ class Scrapes {
   };
   struct Side {
     Eigen::Vector3d place_m, step_m;  // of the next sample
+    // The step changes evenly to the target step within this number of samples: the time until the next scrape.
+    Eigen::Vector3d target_step_m;
+    int to_target = 0;
     // The set in use, and the set of the next or previous block.
     std::array<PerMode, 2> gains;
     std::size_t in_use = 0;
@@ -61,16 +68,19 @@ class Scrapes {
   };
   struct Contact {
     Scrape now;
-    bool on = false, fresh = true;
+    bool on = false, fresh = true, updated = true;
+    bool ended = false;  // silent from the next block on
     sync::HostTime updated_at{};  // presentation time of the newest scrape
     Ramp slide, roll;
     Butterworth patch;
     std::array<Side, 2> sides;
     Block force{}, out{}, in{};
   };
+  int frames_of(double interval_s) const;
   void begin(Contact& contact, const Scrape& scrape) const;
-  Track follow(const ScrapeSide& received, Side& side, double since_s, bool fresh, int frames) const;
-  void render(Contact& contact, int frames, sync::HostTime first) const;
+  void aim(const ScrapeSide& received, Side& side, double since_s, double interval_s, bool fresh) const;
+  Track follow(const ScrapeSide& received, Side& side, int frames, int interval) const;
+  void render(Contact& contact, int offset, int frames, sync::HostTime first) const;
   static void drive(Contact& contact, std::size_t side, Voices& voices, int frames);
 
   double rate_Hz_;

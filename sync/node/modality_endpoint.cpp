@@ -132,7 +132,7 @@ void ModalityEndpoint::announce_profile() const {
     std::cerr << begin << ": this sense has no " << name << "; it is left out" << std::endl;
 }
 
-void ModalityEndpoint::read_control_messages(HostTime) {
+void ModalityEndpoint::read_control_messages(HostTime now) {
   const auto same_run = [&](const header_t& h) { return h.run_id == node_.options().run_id; };
   while (const auto m = degradations_.pop())
     if (same_run(m->message.header))
@@ -141,7 +141,7 @@ void ModalityEndpoint::read_control_messages(HostTime) {
   if (const std::string refusal = receiver_.take_refusal(); !refusal.empty())
     std::cerr << node_.descriptor().name << ": refused: " << refusal << std::endl;
   while (const auto m = playouts_.pop())
-    if (same_run(m->message.header)) playout_.push(m->message);
+    if (same_run(m->message.header)) playout_.push(m->message, std::min(m->arrival, now));
 }
 
 void ModalityEndpoint::step(HostTime now) {
@@ -202,6 +202,10 @@ void ModalityEndpoint::log_in_flight_delays(HostTime now, SimTime sim_now) {
     decisions_.push_back(d);
     return true;
   });
+}
+
+HostTime ModalityEndpoint::presentation_of(HostTime happened) const {
+  return lockstep_ ? happened + delay_ : playout_.presentation_of(happened, profile_delay_);
 }
 
 HostTime ModalityEndpoint::schedule(std::int64_t event_id, HostTime happened) const {

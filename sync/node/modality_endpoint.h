@@ -140,6 +140,8 @@ class ModalityEndpoint {
   SimTime sim_now() const { return sim_now_; }
   // The part of delay() that the profile adds.
   Nanoseconds profile_delay() const { return profile_delay_; }
+  // The time at which the output shows the state of the world at `happened`: p with p - delay() at p = happened.
+  HostTime presentation_of(HostTime happened) const;
   // The time at which to present an event that happened at `happened`: delay() later, or as soon as this modality can under
   // the policy asap.
   HostTime schedule(std::int64_t event_id, HostTime happened) const;

@@ -22,11 +22,17 @@ class PlayoutFollower {
     own_ = delay;
     if (!published_) delay_ = delay;
   }
-  // Takes the entry of this modality; other entries are ignored.
-  void push(const playout_t& m);
+  // Takes the entry of this modality, which arrived at `at`; other entries are ignored. The delay follows it from then on, and not only
+  // from the next tick on.
+  void push(const playout_t& m, HostTime at);
   // Once a tick. Returns the delay in force.
   Nanoseconds step(HostTime now);
   Nanoseconds delay() const { return delay_; }
+  // The delay at a later time, if no other delay is published until then.
+  Nanoseconds delay_at(HostTime later) const;
+  // The time at which the output shows what happened at `happened`, when `added` is added to the delay: the same for each tick that
+  // asks, also while the delay changes.
+  HostTime presentation_of(HostTime happened, Nanoseconds added) const;
   // True under the policy ASAP: the delay is 0, and a later presentation is intended.
   bool as_soon_as_possible() const { return policy_ == playout_t::ASAP && published_; }
   // Rate of the lock-step with the other modalities, Hz; 0: none.

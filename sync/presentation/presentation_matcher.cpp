@@ -155,12 +155,12 @@ std::map<std::string, bool> PresentationMatcher::running_modalities() const {
   return waited_for;
 }
 
-void PresentationMatcher::observe(const playout_t& m, HostTime) {
+void PresentationMatcher::observe(const playout_t& m, HostTime arrival) {
   if (m.header.run_id != own_.run_id) return;
   lockstep_period_ = m.lockstep_Hz > 0 ? from_seconds(1 / m.lockstep_Hz) : Nanoseconds(0);
   for (const playout_entry_t& e : m.entries)
     if (has_room(playout_, e.modality, kMaxModalities))
-      playout_.try_emplace(e.modality, e.modality).first->second.push(m);
+      playout_.try_emplace(e.modality, e.modality).first->second.push(m, arrival);
 }
 
 void PresentationMatcher::observe(const degraded_t& m, HostTime) {

@@ -83,5 +83,5 @@ TEST_CASE("A scraping sound does not depend on the phase of the ticks") {
   }
   CAPTURE(windows, level, difference);
   CHECK(level < 0.02);
-  CHECK(difference < 0.2);
+  CHECK(difference < 0.03);
 }

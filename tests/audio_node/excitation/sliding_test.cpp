@@ -379,7 +379,7 @@ TEST_CASE("Contradictory contacts give finite sound") {
   for (int ms = 0; ms < 20; ++ms) {
     for (const Scrape& s : h.step(c)) scrapes->update(s);
     float stereo[96] = {};
-    scrapes->drive(*voices, 48, at_ms(static_cast<double>(h.now_ms)));
+    scrapes->render(0, 48, at_ms(static_cast<double>(h.now_ms))), scrapes->drive(*voices, 48);
     voices->render(stereo, 48);
     for (const float x : stereo) REQUIRE(std::abs(x) < 10);
   }

@@ -55,6 +55,36 @@ TEST_CASE("A slide with updates at 60 Hz is as steady as one with updates at 1 k
   CHECK(off < 1e-5f * kForce);
 }
 
+// A contact that speeds up and slows down is updated each millisecond. Blocks end at any sample.
+TEST_CASE("The force of a contact does not depend on the instants of the blocks") {
+  const int frames = 48 * 300, begin = GENERATE(1, 13, 48, 64);
+  const auto force_of = [&](int first_block) {
+    auto scrapes = std::make_unique<Scrapes>(kRate);
+    auto voices = std::make_unique<Voices>(4, kRate, kRing);
+    std::vector<float> force;
+    for (int at = 0, block = first_block; at < frames; at += block, block = std::min(64, frames - at)) {
+      for (int done = 0; done < block;) {
+        const int n = at + done, to_update = 48 - n % 48, some = std::min(block - done, to_update);
+        if (n % 48 == 0) {
+          const double t = 1e-3 * (n / 48);
+          Scrape s = along_x(&wavy(), 0.2, n / 48.);
+          s.sides[0].place_m.x() = 0.1 * t - 0.1 * std::sin(20 * t) / 20, s.sides[0].velocity_m_s.x() = 0.1 - 0.1 * std::cos(20 * t);
+          scrapes->update(s);
+        }
+        scrapes->render(done, some, at_ms(n / 48.));
+        done += some;
+      }
+      scrapes->drive(*voices, block);
+      const float* f = scrapes->force(3);
+      force.insert(force.end(), f, f + block);
+    }
+    return force;
+  };
+  const auto whole = force_of(48), other = force_of(begin);
+  REQUIRE(whole.size() == other.size());
+  for (std::size_t n = 0; n < whole.size(); ++n) REQUIRE(std::abs(whole[n] - other[n]) < 1e-4f * kForce);
+}
+
 TEST_CASE("A mode responds as a driven oscillator, loudest where the waves pass at its frequency") {
   const double natural_Hz = 500, damping_1_s = 30;
   const double tone_Hz = GENERATE(250.0, 480.0, 500.0, 520.0, 1000.0);
@@ -206,7 +236,7 @@ TEST_CASE("A contact without further updates and without an end is silent after 
   scrapes->update(along_x(&wavy(), 0.1, 0));
   for (int ms = 0; ms < 34; ++ms) {
     CHECK(scrapes->active() == (ms < 32 ? 1 : 0));
-    scrapes->drive(*voices, 48, at_ms(ms));
+    scrapes->render(0, 48, at_ms(ms)), scrapes->drive(*voices, 48);
   }
 }
 

@@ -52,7 +52,8 @@ inline ScrapeRun run_scrape(const std::function<Scrape(double ms)>& scrape_at, i
     }
     float stereo[2 * 48] = {};
     const bool on = scrapes->active() > 0;
-    scrapes->drive(*voices, 48, at_ms(ms));
+    scrapes->render(0, 48, at_ms(ms));
+    scrapes->drive(*voices, 48);
     voices->render(stereo, 48);
     const float* force = on ? scrapes->force(3) : nullptr;
     for (int n = 0; n < 48; ++n) {

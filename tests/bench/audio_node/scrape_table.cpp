@@ -105,7 +105,8 @@ std::vector<double> callback_us(const Row& row, int blocks, const Sources& sourc
     for (int i = 0; i < row.contacts; ++i) scrapes->update(scrape_of(row, i, t, now, sources));
     float stereo[2 * kFrames] = {};
     const auto begin = std::chrono::steady_clock::now();
-    scrapes->drive(*voices, kFrames, now);
+    scrapes->render(0, kFrames, now);
+    scrapes->drive(*voices, kFrames);
     voices->render(stereo, kFrames);
     took_us.push_back(
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
