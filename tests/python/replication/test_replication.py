@@ -166,6 +166,9 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(verdict.AGREES, verdict.of_values(e, [12.0, 12.0], 12.0).verdict)
         self.assertEqual(verdict.DIFFERS, verdict.of_values(e, [12.0, 20.0], 20.0).verdict)
         self.assertEqual(verdict.NOT_REPRODUCIBLE, verdict.of_values(e, [12.0], math.nan).verdict)
+        uncertain = verdict.of_values(e, [12.0, 4.0, 50.0, 11.0, 50.0], 12.0)
+        self.assertEqual(verdict.DIFFERS, uncertain.verdict)
+        self.assertIn("resamples", uncertain.why)
 
     def test_a_property_from_the_same_paper_is_no_replication(self):
         e = read(GOOD)
@@ -248,6 +251,7 @@ class Shipped(unittest.TestCase):
                     self.assertEqual({"simulated"}, {row["observer"] for row in csv.DictReader(file)})
             with open(folder / "replications.csv", encoding="utf-8") as file:
                 self.assertEqual([r["quantity"] for r in rows], [row["quantity"] for row in csv.DictReader(file)])
+            self.assertEqual(len(rows) + 2, len((folder / "replications.md").read_text(encoding="utf-8").splitlines()))
             self.assertLessEqual({r["verdict"] for r in rows}, {verdict.AGREES, verdict.DIFFERS, verdict.NOT_REPRODUCIBLE})
 
     def test_no_trial_depends_on_a_published_result(self):

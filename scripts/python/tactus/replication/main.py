@@ -36,7 +36,7 @@ def parsed(words):
     p.add_argument("--participants", type=int, metavar="N", help="simulated participants of each experiment; default: the number in the file")
     p.add_argument("--repetitions", type=int, metavar="R", help="trials of each level instead of those of the file, for a quick look; a staircase is not changed")
     p.add_argument("--seed", type=int, metavar="S", help="seed of the population and of all noise; default: that of the file")
-    p.add_argument("--out", metavar="FOLDER", help="also writes FOLDER/replications.csv and all answers to FOLDER/answers/NAME.csv")
+    p.add_argument("--out", metavar="FOLDER", help="also writes the table to FOLDER/replications.csv and FOLDER/replications.md, and all answers to FOLDER/answers/NAME.csv")
     p.add_argument("--json", metavar="FILE", help="also writes the table to FILE as JSON")
     p.add_argument("--list", action="store_true", help="lists the shipped experiments and ends")
     a = p.parse_args(words)
@@ -109,6 +109,9 @@ def summary(rows):
 
 
 def write_table(folder, rows):
+    """replications.csv with all numbers, and replications.md, the printed table."""
+    with open(folder / "replications.md", "w", encoding="utf-8") as file:
+        file.write("\n".join(f"| {' | '.join(line)} |" for line in (HEADER, ("---",) * len(HEADER), *map(line_of, rows))) + "\n")
     with open(folder / "replications.csv", "w", newline="", encoding="utf-8") as file:
         out = csv.DictWriter(file, COLUMNS)
         out.writeheader()

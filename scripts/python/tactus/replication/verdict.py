@@ -47,7 +47,14 @@ def of_values(expectation, values, group=None):
     else:
         low, high = (float(x) for x in np.quantile(finite, [0.025, 0.975]))
     agrees, why = compared(expectation, mean, n, error, group is not None, from5, to95)
+    if agrees and group is not None and np.mean([in_range(expectation, x) for x in values]) <= 0.5:
+        agrees, why = False, "the level is in the range, but not in most resamples of the participants"
     return Verdict(mean, low, high, from5, to95, n, len(values), AGREES if agrees else DIFFERS, why)
+
+
+def in_range(e, x):
+    """Whether a number lies in the range of the file; NaN does not."""
+    return math.isfinite(x) and (e.low is None or x >= e.low) and (e.high is None or x <= e.high)
 
 
 def compared(e, mean, n, error, is_group, from5, to95):
