@@ -270,6 +270,17 @@ class Shipped(unittest.TestCase):
                     results.append(([r["ours"] for r in rows], (folder / place / "answers" / f"{name}.csv").read_text(encoding="utf-8"), [r["verdict"] for r in rows]))
                 self.assertEqual(results[0][:2], results[1][:2])
 
+    def test_a_file_that_does_not_fit_its_paradigm_is_refused_with_one_sentence(self):
+        for old, new, word in (('<setting name="first"', '<setting name="colour" value="red" source="design: a choice"/><setting name="first"', "colour"),
+                               ('paradigm="two_events"', 'paradigm="flying"', "flying"), ('answer="together"', 'answer="apart"', "apart"),
+                               ('outcome="together"', 'outcome="apart"', "apart"), ('levels="-200', 'levels="-99999', "soa_ms")):
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder, "s.xml")
+                path.write_text(GOOD.replace(old, new, 1), encoding="utf-8")
+                status, _, error = called([path, "--participants", 2])
+                self.assertEqual((1, 1), (status, error.count("\n")), error)
+                self.assertIn(word, error)
+
     def test_wrong_options_are_refused_with_one_sentence(self):
         for words in (["--participants", "0"], ["--seed", "-1"], ["--repetitions", "0"], ["no_such"], ["vogels_2004", "vogels_2004"], ["--colour"]):
             status, _, error = called(words)

@@ -1,4 +1,5 @@
 """Trials of simulated participants: the client of the program experiment_trials, and the procedure of an experiment. Nothing here reads a published result."""
+import contextlib
 import csv
 import io
 import subprocess
@@ -24,7 +25,8 @@ class TrialProgram:
         return self
 
     def __exit__(self, *_):
-        self.process.stdin.close()
+        with contextlib.suppress(OSError):  # it has ended
+            self.process.stdin.close()
         self.process.wait()
         self.process.stdout.close()
 
