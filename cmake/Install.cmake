@@ -13,7 +13,7 @@ set(TACTUS_INCLUDE_DIR include/tactus)  # holds the source folders, and tactus/N
 set(runtime_programs sim_node haptic_node audio_node visual_node thermal_node recorder sync_node summarise watch export_csv export_events
   export_log degrade playout set simulation spy upgrade_log replay live_server message_types probe_pairs relay save_pictures
   check_sounds convert_geometry read_geometry read_pictures read_sounds draw_text thermal_device virtual_time simulated_player)
-set(studies_programs trial_runner play_games)
+set(studies_programs trial_runner play_games experiment_trials)
 foreach(component runtime studies)
   foreach(program IN LISTS ${component}_programs)
     if(TARGET ${program})
@@ -48,7 +48,7 @@ install(DIRECTORY visual_node/rooms DESTINATION ${TACTUS_DATA_DIR}/visual_node C
 install(FILES sync/presentation/thresholds.csv DESTINATION ${TACTUS_DATA_DIR}/sync/presentation COMPONENT runtime)
 
 # The command tactus, its Python package, and the packages of studies.
-set(study_packages study psychophysics analysis sweep)
+set(study_packages study psychophysics analysis sweep replication)
 install(PROGRAMS scripts/tactus scripts/setup DESTINATION ${TACTUS_SCRIPTS_DIR} COMPONENT runtime)
 install(FILES scripts/prologue.sh scripts/removed_variables.txt scripts/packages.txt DESTINATION ${TACTUS_SCRIPTS_DIR} COMPONENT runtime)
 set(left_out PATTERN "__pycache__" EXCLUDE PATTERN "README.md" EXCLUDE PATTERN "virtual_time_check" EXCLUDE)

@@ -98,7 +98,7 @@ def attributes_of(node, types):
     return (kind if extension is None else extension).findall(f"{XS}attribute")
 
 
-def element_sections(node, types, parents, seen):
+def element_sections(node, types, parents, seen, file="scripts/python/tactus/study/study.xsd"):
     path = [*parents, node.get("name")]
     key = (node.get("name"), node.get("type"))
     if key in seen and node.get("type"):
@@ -106,7 +106,7 @@ def element_sections(node, types, parents, seen):
     seen.add(key)
     meaning = documented(node)
     if not meaning:
-        raise PageError(f"scripts/python/tactus/study/study.xsd: the element {'/'.join(path)} has no xs:documentation; add one sentence")
+        raise PageError(f"{file}: the element {'/'.join(path)} has no xs:documentation; add one sentence")
     yield f"## {' / '.join(path)}\n"
     often = node.get("maxOccurs", "1")
     yield f"{meaning}{'' if len(path) == 1 else ' Required.' if node.get('minOccurs') != '0' else ' Optional.'}{'' if often == '1' else f' At most {often}.'}\n"
@@ -116,16 +116,21 @@ def element_sections(node, types, parents, seen):
         yield from rows
         yield ""
     for child in children_of(node, types):
-        yield from element_sections(child, types, path, seen)
+        yield from element_sections(child, types, path, seen, file)
+
+
+# Schemas of study files.
+SCHEMAS = ("scripts/python/tactus/study/study.xsd", "scripts/python/tactus/replication/replication.xsd")
 
 
 def study_elements(root):
-    schema = tree.parse(root / "scripts" / "python" / "tactus" / "study" / "study.xsd").getroot()
-    types = {t.get("name"): t for t in schema if t.tag in (f"{XS}simpleType", f"{XS}complexType")}
-    lines = ["# Elements of a study file\n", "Generated from the schema `study.xsd`. [Studies](../concepts/studies.md) explains the parts, the [README of the package]"
+    lines = ["# Elements of a study file\n", "Generated from the schemas `study.xsd` and `replication.xsd`, of published experiments. [Studies](../concepts/studies.md) explains the parts, the [README of the package]"
              "(../../scripts/python/tactus/study/README.md) what each element does.\n"]
-    for node in schema.findall(f"{XS}element"):
-        lines += element_sections(node, types, [], set())
+    for file in SCHEMAS:
+        schema = tree.parse(root / file).getroot()
+        types = {t.get("name"): t for t in schema if t.tag in (f"{XS}simpleType", f"{XS}complexType")}
+        for node in schema.findall(f"{XS}element"):
+            lines += element_sections(node, types, [], set(), file)
     return "\n".join(lines)
 
 

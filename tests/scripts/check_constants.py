@@ -4,8 +4,8 @@
   check_constants.py [ROOT]           prints every offence as FILE: what; exits 1 when there is one
   check_constants.py [ROOT] --list    prints table, constant, value and source of every constant that needs an entry
 
-Constants are the rows of the settings.csv of every folder, of TABLES, the parameters with a source in scripts/studies/*.xml, and the
-C++ tables: constexpr initialisers of four or more numbers, at least two of them with decimals, with the comments above and within as source. A source that begins
+Constants are the rows of the settings.csv of every folder, of TABLES, the parameters with a source in scripts/studies/*.xml, the results and
+settings of scripts/studies/published/*.xml, and the C++ tables: constexpr initialisers of four or more numbers, at least two of them with decimals, with the comments above and within as source. A source that begins
 with "design" and cites nothing needs no more. Every other constant has a row in docs/constants.csv: table, constant, value (of a C++
 table the checksum of its numbers), status and evidence. Status: `read` (the value stands in the source, or in its abstract), `quoted` (in a
 text that cites the source), `computed` (it follows from a formula), `design` (a choice of this project), `unverified`. A row whose value is no longer that
@@ -77,6 +77,19 @@ def xml_constants(root):
         for node in xml.parse(os.path.join(root, path)).iter():
             if "source" in node.attrib and "value" in node.attrib:
                 yield path, node.get("name", node.tag), node.get("value"), node.get("source")
+    for path in sorted(glob.glob("scripts/studies/published/*.xml", root_dir=root)):
+        yield from published_constants(path, xml.parse(os.path.join(root, path)).getroot())
+
+
+def published_constants(path, root):
+    """Published results with a number, and settings that are numbers, of a published experiment."""
+    for expected in root.iter("expect"):
+        if "value" in expected.attrib:
+            yield path, expected.get("quantity"), expected.get("value"), expected.get("source", "")
+    for place in (root.find("trial"), *root.iter("condition")):
+        for setting in place.iter("setting"):
+            if re.fullmatch(NUMBER, setting.get("value", "")):
+                yield path, "/".join(filter(None, (place.get("id"), setting.get("name")))), setting.get("value"), setting.get("source", "")
 
 
 def initialiser(text, begin):

@@ -4,13 +4,15 @@ import importlib
 from tactus.commands import prepare
 from tactus.paths import SCRIPTS
 
-VERBS = {"check": "tactus.study.check", "run": "tactus.study.run", "sweep": "tactus.sweep.main", "analyse": "tactus.analysis.main"}
+VERBS = {"check": "tactus.study.check", "run": "tactus.study.run", "sweep": "tactus.sweep.main", "analyse": "tactus.analysis.main",
+         "replicate": "tactus.replication.main"}
 USAGE = """Usage: tactus study VERB ...
 
   check STUDY.xml                        validates the file; prints the plan, its trials, the duration and the statistical power
   run STUDY.xml --participant P01        runs the study with a participant on a live cluster; resumes an interrupted study
   sweep STUDY.xml --games N --out DIR    plays games of the simulated player in virtual time, in parallel on this machine or on a Slurm cluster
   analyse FOLDER...                      computes fits, limits and one report from the results
+  replicate [FILE...]                    repeats published experiments with simulated participants, and compares the results
 
 STUDY.xml is a file, or the name of a shipped study:"""
 
@@ -27,5 +29,5 @@ def main(words):
     if verb not in VERBS:
         return prepare.refuse("study", f"there is no verb '{verb}'; choose from {', '.join(VERBS)}")
     if verb != "analyse" and "--help" not in words:
-        prepare.install_and_build()
+        prepare.install_and_build(*(("experiment_trials",) if verb == "replicate" else ()))
     return importlib.import_module(VERBS[verb]).main(words)

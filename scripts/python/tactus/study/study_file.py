@@ -137,6 +137,8 @@ def read(text, with_scene=True):
     encoding = root.getroottree().docinfo.encoding
     if encoding and encoding.upper() not in ENCODINGS:
         raise Refusal(f"{text}:1: declares the encoding {encoding}; save the file as UTF-8, and declare that")
+    if root.tag == "replication":
+        raise Refusal(f"{text}:1: is a published experiment; run it with tactus study replicate, or give a <study>")
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
     if not schema.validate(root):
         first = schema.error_log[0]
