@@ -19,7 +19,7 @@ def section(report):
     head = [f"{row['metric'].removesuffix('_' + unit)}, {unit}" if (unit := of_run.MEANING[row["metric"]][0]) != "1" else row["metric"] for row in best]
     meanings = "; ".join(f"{row['metric']}: {of_run.MEANING[row['metric']][1]} (skill {row['skill']:.2f})" for row in best)
     text = (f"<p>The metrics that predicted success best in {stored['games']} games, out of sample {report.cite(SOURCE)}. {safe(meanings)}. Skill is the share of the uncertainty about a game "
-            f"that the metric removes. <code>{safe(stored["command"])}</code> repeats the ranking.</p>\n")
+            f"that the metric removes. <code>{safe(stored['command'])}</code> repeats the ranking.</p>\n")
     out = "<h2>Metrics</h2>\n" + text
     if all(value is None for row in rows for value in row[1:]):
         return out + report.lacks("No metric has data: no modality was degraded, and there is no second log with the same motion to compare forces with.")
