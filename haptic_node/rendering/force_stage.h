@@ -2,7 +2,7 @@
 // opposite of the computed force at once. Pure.
 //
 //   wanted force ─┬─ limits, as if it were displayed ───────────────────────────▶ opposite force on the bodies
-//                 └─ operators of the stage ─ brake (injected_energy.h) ─ limits ─▶ hand
+//                 └─ operators of the stage ─ TDPA, if asked for (tdpa.h) ─ brake (injected_energy.h) ─ limits ─▶ hand
 //
 // The limits of safety are the last stage of both. While the stage is active there are two sets of them, which begin equal: the
 // bodies then receive exactly what they would receive without the stage, for the same motion of the hand.
@@ -15,6 +15,7 @@
 #include "haptic_node/safety/injected_energy.h"
 #include "haptic_node/safety/acting_force.h"
 #include "haptic_node/safety/safety.h"
+#include "haptic_node/safety/tdpa.h"
 #include "haptic_node/settings.gen.h"
 #include "sync/degradation/stage_signal.h"
 
@@ -56,15 +57,28 @@ class ForceStage {
   const Eigen::Vector3d& transient_N() const { return transient_N_; }
   // Energy that the stage has given to the hand in this episode of contact, J; 0 while it is not active.
   double injected_J() const { return active() ? injected_.injected_J() : 0; }
+  // The controller of passivity="tdpa".
+  const TimeDomainPassivity& tdpa() const { return tdpa_; }
 
   // Moves reports of presented events to the time at which the hand gets their force.
   void delay(std::vector<presentation_t>& reports) const;
 
  private:
+  void observe_tdpa(const Wrench& displayed, const Wrench& computed, const DeviceMotion& motion, double span_s, double dt);
+  DeviceMotion expected_motion(double held_s) const;
+
   std::optional<Safety> reaction_;  // of the bodies; nothing: the stage is not active
   ForceHistory reaction_commands_;
   sync::StageSignal signal_;
   InjectedEnergy injected_;
+  // The two ends of the channel of passivity="tdpa".
+  TimeDomainPassivity tdpa_;
+  double released_J_ = 0;      // energy that the computed force has released, which the packets report
+  bool controls_ = false;      // the profile asks for it
+  bool same_ = true;           // in this episode, the displayed force has been the computed one
+  double apart_s_ = 0;         // time without either force
+  DeviceMotion motion_;        // newest motion of the device, and its duration
+  double motion_s_ = 0;
   sync::OperatorChain* operators_ = nullptr;
   sync::Decisions* decisions_ = nullptr;
   sync::HostTime now_{};

@@ -1,5 +1,6 @@
 // The stage `action` of a profile: the world receives the messages of a hand late, or not all of them. The felt force is
-// rendered from the touch model, which the world still sends at once. Pure.
+// rendered from the touch model, which the world still sends at once. A deadband transmits the motion of the hand only: the world
+// reconstructs it (sync/degradation/motion_codec.h), and receives all forces. Pure.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ class LateHand {
     waiting_.push(std::move(message), arrival, operators, decisions);
   }
   // Appends the messages that reach the world by now. world: its simulated time. A message that a newer one of its tool has
-  // overtaken is dropped, because impulses are sums and the newest pose counts. While the hand is late, its touch model reaches
+  // overtaken is dropped, because impulses are sums and the newest pose counts. While the hand is late or coarse, its touch model reaches
   // as far as one that is rendered late (touch_margin_late), so that fixed surfaces feel the same.
   void release(sync::HostTime now, sync::SimTime world, const sync::OperatorChain& operators, std::vector<tool_state_t>& out);
 

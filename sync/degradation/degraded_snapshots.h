@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <tactus/sim_clock_t.hpp>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "sync/bus/page_assembler.h"
 #include "sync/bus/recent_map.h"
 #include "sync/degradation/decision_record.h"
+#include "sync/degradation/motion_codec.h"
 #include "sync/degradation/operator_chain.h"
 #include "sync/degradation/snapshot.h"
 #include "sync/degradation/stream_pace.h"
@@ -71,6 +73,9 @@ class DegradedSnapshots {
   void present_on_release() { presents_on_release_ = true; }
   // Delivered messages keep their own publication time, clock and arrival: for a receiver that sums over them.
   void keep_stamps() { keeps_stamps_ = true; }
+  // For a receiver that follows a hand: a message that a deadband suppresses is delivered all the same, as late as the sent ones,
+  // with the motion that the receiver has without it (motion_codec.h).
+  void reconstruct_motion() { reconstructs_motion_ = true; }
   // decisions: list to which decisions are appended; null: none.
   void push(Message m, HostTime arrival, OperatorChain& operators, Decisions* decisions) {
     record_newest(m, arrival);
@@ -165,7 +170,9 @@ class DegradedSnapshots {
   }
 
   void release(Message m, HostTime arrival, const Decided& decided, OperatorChain& operators) {
-    const Decision& decision = decided.decision;
+    Decision decision = decided.decision;
+    if constexpr (std::is_same_v<Message, tool_state_t>)
+      if (reconstructs_motion_) follow_motion(m, decision, operators);
     if (decision.dropped()) {
       if (decision.conceal != Conceal::kZero || !make_zero(m)) return;
     } else if (operators.changes_values()) {
@@ -179,6 +186,20 @@ class DegradedSnapshots {
     }
     if (decision.duplicated) waiting_.push(release, {m, arrival, decided.order, decision, decided.arrival});
     waiting_.push(release, {std::move(m), arrival, decided.order, decision, decided.arrival});
+  }
+
+  // Records the motion of a sent message; gives a suppressed one the motion of the receiver, and a release as late as that of a
+  // sent one.
+  void follow_motion(Message& m, Decision& decision, const OperatorChain& operators) {
+    const SimTime t = std::max(sim_time(m.header.sim_time_ns), decision.paced);
+    if (motions_.size() >= kStreams && !motions_.contains(stream_of(m))) motions_.clear();
+    const DeadbandDef* const deadband = operators.deadband(t);
+    if (!deadband) return void(motions_.erase(stream_of(m)));
+    MotionCodec& motion = motions_[stream_of(m)];
+    if (!decision.dropped()) return motion.add(t, m, *deadband);
+    if (decision.why != DropReason::kDeadband || !motion.reconstruct(t, m)) return;
+    decision.why = DropReason::kKept;
+    decision.release += operators.constant_delay(t) - operators.presentation_delay(t);
   }
 
   // True for a snapshot that a newer one of its stream has overtaken, if the order must be kept. WORLD_STATE contains only
@@ -288,7 +309,8 @@ class DegradedSnapshots {
   RecentMap<std::uint64_t, Decided> decided_{kRemembered};
   Decisions overtaken_;
   std::uint64_t order_ = 0;
-  bool presents_on_release_ = false, keeps_stamps_ = false;
+  bool presents_on_release_ = false, keeps_stamps_ = false, reconstructs_motion_ = false;
+  std::map<std::uint64_t, MotionCodec> motions_;  // by stream
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};

@@ -54,7 +54,8 @@ StageDef stage_of(const Cells& row) {
   return {row[kName],
           word<StageKind>(row, {{"input", StageKind::kInput},
                                 {"messages", StageKind::kMessages},
-                                {"signal", StageKind::kSignal}}),
+                                {"signal", StageKind::kSignal},
+                                {"display", StageKind::kDisplay}}),
           number(row, kMax), row[kMeaning]};
 }
 

@@ -30,7 +30,8 @@ struct WithoutEffect {
 enum class StageKind : std::uint8_t {
   kInput,     // the streams from the bus, the stage of a rule that names none
   kMessages,  // whole messages of this modality, whose values stay
-  kSignal     // a signal, sample by sample
+  kSignal,    // a signal, sample by sample
+  kDisplay    // a signal, sample by sample, that acts on the user
 };
 
 // A place in the loop of a modality at which a rule of a profile may act.

@@ -25,6 +25,7 @@ std::string text_of(const EffectFigures& f, const char* what, bool with_rate) {
   if (f.lost > 0) text += formatted(", %.1f %% lost", percent(f.lost, f.items)) + formatted(" in bursts of %.1f", f.mean_burst());
   if (f.overtaken > 0) text += formatted(", %.1f %% overtaken", percent(f.overtaken, f.items));
   if (f.repeated > 0) text += formatted(", %.1f %% twice", percent(f.repeated, f.items));
+  if (f.suppressed > 0) text += ", " + std::to_string(f.sent()) + " of " + std::to_string(f.items) + " sent";
   if (with_rate && f.rate_Hz > 0) text += formatted(", %.1f/s", f.rate_Hz);
   return text;
 }
@@ -61,6 +62,7 @@ void MeasuredEffect::add(const DecisionRecord& record, Nanoseconds presentation_
   // An item that a rate or a deadband drops before the loss does not end a burst.
   if (lost || d.why == DropReason::kKept) s.in_burst = lost;
   s.counts.thinned += d.why == DropReason::kRate || d.why == DropReason::kDeadband;
+  s.counts.suppressed += d.why == DropReason::kDeadband;
   s.counts.off += d.why == DropReason::kOff || d.why == DropReason::kFreeze;
   if (d.dropped()) return;
   ++s.counts.delivered;
@@ -75,7 +77,7 @@ EffectFigures MeasuredEffect::figures(bool events) const {
     if ((id == 0) != events) continue;
     const EffectFigures& c = s.counts;
     all.items += c.items, all.delivered += c.delivered, all.lost += c.lost, all.bursts += c.bursts;
-    all.thinned += c.thinned, all.off += c.off, all.overtaken += c.overtaken, all.repeated += c.repeated;
+    all.thinned += c.thinned, all.suppressed += c.suppressed, all.off += c.off, all.overtaken += c.overtaken, all.repeated += c.repeated;
     const double n = static_cast<double>(c.delivered);
     sum_s += s.sum_s + n * s.reference_s;
     square_s2 += s.sum_square_s2 + 2 * s.reference_s * s.sum_s + n * s.reference_s * s.reference_s;

@@ -16,9 +16,11 @@ struct EffectFigures {
   std::int64_t items = 0, delivered = 0;
   std::int64_t lost = 0, bursts = 0;           // by loss; runs of losses within a stream
   std::int64_t thinned = 0;                    // by rate and deadband
+  std::int64_t suppressed = 0;                 // by deadband alone
   std::int64_t off = 0;                        // by off and freeze
   std::int64_t overtaken = 0, repeated = 0;    // by jitter; by duplicate
   double mean_delay_s = 0, sd_delay_s = 0;     // of the delivered items, as the profile adds it
+  std::int64_t sent() const { return items - thinned - off; }  // packets of a codec with a deadband
   double rate_Hz = 0;                          // of the delivered items of the fastest stream; 0: not known yet
   double mean_burst() const { return bursts > 0 ? static_cast<double>(lost) / static_cast<double>(bursts) : 0; }
 };
@@ -41,7 +43,7 @@ class MeasuredEffect {
   EffectFigures events() const { return figures(true); }
   EffectFigures snapshots() const { return figures(false); }
   // One line of at most kMaxText printable characters: "events +40.0 ms (sd 3.0), 5.1 % lost in bursts of 3.0; state +40.0 ms
-  // (sd 2.9), 59.0/s". Empty: nothing was decided.
+  // (sd 2.9), 59.0/s". With a deadband also "42 of 1000 sent". Empty: nothing was decided.
   std::string text() const;
   static constexpr std::size_t kMaxText = 160;
 

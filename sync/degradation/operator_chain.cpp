@@ -146,14 +146,24 @@ void OperatorChain::delay_item(Active& a, Chain& chain, const StreamItem& item, 
   if (rule.duplicate && uniform(mixed(a.seed, kDuplicateDraw), item.key) < *rule.duplicate) decision.duplicated = true;
 }
 
-Decision OperatorChain::decide(const StreamItem& item) {
+Decision OperatorChain::decide(const StreamItem& item) { return decide(item, nullptr); }
+
+Decision OperatorChain::decide(const StreamItem& item, ForceSample& sample) { return decide(item, &sample); }
+
+Decision OperatorChain::decide(StreamItem item, ForceSample* sample) {
   Decision decision;
   decision.release = item.arrival;
   decision.paced = item.paced;
+  Signal force;
+  if (sample) item.signals = {&force, 1};
   for (Active& a : rules_) {
     // A snapshot covers many bodies and contacts, so a filtered rule applies only to its values.
     if (!active_at(a.rule, item.time) || (a.rule.filtered() && !item.is_event)) continue;
     if (item.is_event && !applies_to(a.rule, item.material_a, item.material_b, item.body_a, item.body_b)) continue;
+    if (sample) {
+      degrade(a, *sample, item.time);
+      force.value = sample->force_N;
+    }
     Chain& chain = chain_of(a, item);
     decision.evaluated = true;
     if (drops(a, chain, item, decision)) return decision;
@@ -208,6 +218,20 @@ Nanoseconds OperatorChain::usual_delay(SimTime now) const {
   return sum;
 }
 
+const DeadbandDef* OperatorChain::deadband(SimTime now) const {
+  const DeadbandDef* last = nullptr;
+  for (const Active& a : rules_)
+    if (a.rule.deadband && active_at(a.rule, now) && !a.rule.filtered()) last = &*a.rule.deadband;
+  return last;
+}
+
+Passivity OperatorChain::passivity(SimTime now) const {
+  Passivity last = Passivity::kNone;
+  for (const Active& a : rules_)
+    if (active_at(a.rule, now)) last = a.rule.passivity.value_or(last);
+  return last;
+}
+
 bool OperatorChain::cuts_off(SimTime now) const {
   return std::any_of(rules_.begin(), rules_.end(),
                      [&](const Active& a) { return (a.rule.off || a.rule.freeze) && active_at(a.rule, now); });
@@ -224,22 +248,24 @@ double OperatorChain::filtered(Active& a, std::int64_t id, int component, double
   return it->second.value;
 }
 
-void OperatorChain::degrade_force(ForceSample& sample, SimTime t) {
-  for (Active& a : rules_) {
-    const Rule& r = a.rule;
-    if (!active_at(r, t)) continue;
-    if (const double size = sample.force_N.norm(); r.quantise && size > 0) {
-      const double factor = quantised(*r.quantise, size) / size;
-      sample.force_N *= factor;
-      sample.transient_N *= factor;
-    }
-    if (r.gain)
-      for (Eigen::Vector3d* part : {&sample.force_N, &sample.torque_N_m, &sample.transient_N}) *part *= r.gain->value;
-    if (!r.lowpass) continue;
-    int component = 0;
-    for (Eigen::Vector3d* part : {&sample.force_N, &sample.torque_N_m, &sample.transient_N})
-      for (double& x : *part) x = filtered(a, 0, component++, x, r.lowpass->value, t);
+void OperatorChain::degrade(Active& a, ForceSample& sample, SimTime t) {
+  const Rule& r = a.rule;
+  if (const double size = sample.force_N.norm(); r.quantise && size > 0) {
+    const double factor = quantised(*r.quantise, size) / size;
+    sample.force_N *= factor;
+    sample.transient_N *= factor;
   }
+  if (r.gain)
+    for (Eigen::Vector3d* part : {&sample.force_N, &sample.torque_N_m, &sample.transient_N}) *part *= r.gain->value;
+  if (!r.lowpass) return;
+  int component = 0;
+  for (Eigen::Vector3d* part : {&sample.force_N, &sample.torque_N_m, &sample.transient_N})
+    for (double& x : *part) x = filtered(a, 0, component++, x, r.lowpass->value, t);
+}
+
+void OperatorChain::degrade_force(ForceSample& sample, SimTime t) {
+  for (Active& a : rules_)
+    if (active_at(a.rule, t)) degrade(a, sample, t);
 }
 
 double OperatorChain::degraded_value(Quantity quantity, std::int64_t id, int component, double value, SimTime t,

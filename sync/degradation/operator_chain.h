@@ -64,6 +64,7 @@ struct ForceSample {
   Eigen::Vector3d force_N = Eigen::Vector3d::Zero(), torque_N_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d transient_N = Eigen::Vector3d::Zero();  // part of force_N that is due to hits
   double share = 1;  // factor that its sender has already applied, above 0; not changed by operators
+  double energy_J = 0;  // energy that its sender has released so far, a sum; not changed by operators
   friend bool operator==(const ForceSample&, const ForceSample&) = default;
 };
 
@@ -78,6 +79,9 @@ class OperatorChain {
   void set_scene(SceneNames names) { names_ = std::move(names); }
 
   Decision decide(const StreamItem& item);
+  // The same for a force signal: each rule first changes the sample (quantise, gain, low-pass), and its other operators decide on
+  // the changed sample.
+  Decision decide(const StreamItem& item, ForceSample& sample);
   // Returns true when this message, one of several that repeat or page the same content, is lost on the wire. message: a key
   // that no other message has.
   bool lost_on_wire(std::uint64_t message, SimTime now);
@@ -88,6 +92,10 @@ class OperatorChain {
   Nanoseconds constant_delay(SimTime now) const;
   // Longest time for which an item is usually held back: constant delays, the spread of a jitter, and the period of a rate.
   Nanoseconds usual_delay(SimTime now) const;
+  // The deadband of the last unfiltered rule in force that has one; null: none.
+  const DeadbandDef* deadband(SimTime now) const;
+  // Control of the energy that a rule in force asks for.
+  Passivity passivity(SimTime now) const;
   // True while a rule lets nothing through.
   bool cuts_off(SimTime now) const;
 
@@ -127,6 +135,8 @@ class OperatorChain {
     std::map<std::pair<std::int64_t, int>, Filtered> lowpass;
   };
 
+  Decision decide(StreamItem item, ForceSample* sample);
+  void degrade(Active& a, ForceSample& sample, SimTime t);
   double filtered(Active& a, std::int64_t id, int component, double value, double cutoff_Hz, SimTime now);
   double elapsed_s(SimTime t) const;
   bool active_at(const Rule& rule, SimTime t) const;

@@ -112,6 +112,7 @@ const std::map<std::string, JitterShape> kShapes{
     {"uniform", JitterShape::kUniform}, {"normal", JitterShape::kNormal}, {"pareto", JitterShape::kPareto}};
 const std::map<std::string, bool> kTruths{{"true", true}, {"false", false}};
 const std::map<std::string, Conceal> kConceals{{"hold", Conceal::kHold}, {"zero", Conceal::kZero}};
+const std::map<std::string, Passivity> kPassivities{{"none", Passivity::kNone}, {"tdpa", Passivity::kTdpa}};
 
 std::string_view unit_of(Quantity q) {
   return q == Quantity::kForce ? "N" : q == Quantity::kVelocity ? "m/s" : "m";
@@ -150,6 +151,14 @@ DeadbandDef deadband(Words& w) {
   d.floor = w.pair("floor", unit_of(d.quantity), 0, 0, kLargest);
   d.lowpass_Hz = w.pair("lowpass", "Hz", 0, 0, 1e4);
   d.adaptive_s_m = w.pair("adaptive", "s/m", 0, 0, 1e3);
+  d.resend_s = w.pair("resend", "s", 0, 0, kLongest_s);
+  const std::string predict = w.pair("predict", "hold");
+  if (predict != "hold" && predict != "linear") throw std::invalid_argument("predict=" + predict + ": choose hold or linear");
+  d.predictor = predict == "linear" ? Predictor::kLinear : Predictor::kHold;
+  // The receiver has the values as sent, without this filter, so its line would be another one than that of the sender.
+  if (d.predictor == Predictor::kLinear && d.lowpass_Hz > 0)
+    throw std::invalid_argument("predict=linear follows the values as sent; remove lowpass= here and give the "
+                                "attribute lowpass of the <degrade> instead");
   return d;
 }
 
@@ -220,6 +229,7 @@ const std::map<std::string, Fill>& operators() {
       {"duplicate", [](Rule& r, Words& w) { r.duplicate = w.value("1", 0, 1); }},
       {"freeze", [](Rule& r, Words& w) { r.freeze = conceal_of(w); }},
       {"conceal", [](Rule& r, Words& w) { r.conceal = conceal_of(w); }},
+      {"passivity", [](Rule& r, Words& w) { r.passivity = chosen(w, kPassivities, "choose none or tdpa"); }},
       {"from", [](Rule& r, Words& w) { r.from_s = w.value("s", 0, 1e6); }},
       {"until", [](Rule& r, Words& w) { r.until_s = w.value("s", 0, 1e6); }},
   };

@@ -92,9 +92,11 @@ void check_quantities(const Rule& rule) {
 }
 
 // Attributes of a rule at a stage of each kind, beside modality, stage, from and until.
-constexpr std::array kOfMessages{"delay", "jitter", "rate", "loss", "off"};
+constexpr std::array kOfMessages{"delay", "jitter", "rate", "loss", "off", "deadband"};
 constexpr std::array kOfSignal{"delay", "jitter", "rate", "loss",    "off",   "freeze",
                                "conceal", "gain", "lowpass", "quantise", "deadband"};
+constexpr std::array kOfDisplay{"delay",   "jitter", "rate",    "loss",     "off",      "freeze",
+                                "conceal", "gain",   "lowpass", "quantise", "deadband", "passivity"};
 
 template <std::size_t kCount>
 void check_attribute(const std::array<const char*, kCount>& valid, const StageDef& stage, const std::string& name) {
@@ -120,6 +122,21 @@ void check_signal(const Rule& rule, const StageDef& stage) {
     throw std::invalid_argument("order=free: the newest sample of a signal counts; remove it");
 }
 
+// The receiver of messages reconstructs a motion from those that are sent.
+void check_messages(const Rule& rule, const StageDef& stage) {
+  if (rule.deadband && rule.deadband->quantity == Quantity::kForce)
+    throw std::invalid_argument("deadband: the stage " + stage.name +
+                                " transmits a motion; name velocity or position");
+}
+
+// Operators that need a stage: the input of a modality has no receiver that predicts, and displays no force.
+void check_input(const Rule& rule) {
+  if (rule.deadband && rule.deadband->predictor == Predictor::kLinear)
+    throw std::invalid_argument("predict=linear needs a receiver that predicts; name a stage beside the input, for example stage=\"force\"");
+  if (rule.passivity)
+    throw std::invalid_argument("passivity controls a force that is displayed late; give stage=\"force\"");
+}
+
 // Checks stage= of a rule, and the attributes that the stage permits. The stage of the input is stored as no stage.
 void check_stage(Rule& rule, const Element& e) {
   if (!e.Attribute("stage")) return;
@@ -139,9 +156,10 @@ void check_stage(Rule& rule, const Element& e) {
     return;
   }
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next())
-    stage->kind == StageKind::kMessages ? check_attribute(kOfMessages, *stage, a->Name())
-                                        : check_attribute(kOfSignal, *stage, a->Name());
-  if (stage->kind == StageKind::kSignal) check_signal(rule, *stage);
+    stage->kind == StageKind::kMessages  ? check_attribute(kOfMessages, *stage, a->Name())
+    : stage->kind == StageKind::kDisplay ? check_attribute(kOfDisplay, *stage, a->Name())
+                                         : check_attribute(kOfSignal, *stage, a->Name());
+  stage->kind == StageKind::kMessages ? check_messages(rule, *stage) : check_signal(rule, *stage);
   const double delay_s = (rule.delay ? rule.delay->delay_s : 0) + (rule.jitter ? needed_delay_s(*rule.jitter) : 0);
   if (stage->max_delay_s > 0 && delay_s > stage->max_delay_s)
     throw std::invalid_argument("delay and jitter of the stage " + stage->name + " add up to more than " +
@@ -180,6 +198,7 @@ Rule parse_rule(const Element& e, const DeclaredOutput& own) {
   check_stage(rule, e);
   for (const Attribute& a : of_output) read_output(rule, a, own);
   check_jitter(rule);
+  if (rule.stage.empty()) check_input(rule);
   if (rule.stage.empty()) check_quantities(rule);
   return rule;
 }

@@ -25,6 +25,9 @@ namespace tactus::sync {
 enum class DelayKind : std::uint8_t { kPresentation, kNetwork };
 // Replacement of a missing update: the last one, or no contact at all.
 enum class Conceal : std::uint8_t { kHold, kZero };
+// Control of the energy of a delayed force: none beside that of its node, or time-domain passivity with the energy that its
+// packets carry.
+enum class Passivity : std::uint8_t { kNone, kTdpa };
 
 struct DelayDef {
   double delay_s = 0;
@@ -75,6 +78,7 @@ struct Rule {
   std::optional<double> duplicate;  // share of items that arrive twice
   std::optional<Conceal> freeze;    // no new messages arrive
   Conceal conceal = Conceal::kHold;
+  std::optional<Passivity> passivity;  // of a stage that displays a force
   OutputValues output;  // operators on the output itself: a slow renderer, not a slow network
 
   bool filtered() const { return !material.empty() || !body_a.empty(); }

@@ -1,7 +1,6 @@
 #include "sync/degradation/stage_signal.h"
 
 #include <algorithm>
-#include <array>
 
 #include "sync/random/keyed_random.h"
 
@@ -12,9 +11,26 @@ constexpr std::uint64_t kSignalStream = 0x3000;  // beside the streams of snapsh
 
 }  // namespace
 
+void StageSignal::Receiver::add(SimTime t, const PendingSample& sent) {
+  force_N.add(t, sent.sample.force_N);
+  torque_N_m.add(t, sent.sample.torque_N_m);
+  transient_N.add(t, sent.sample.transient_N);
+  last = sent.sample;
+  release = sent.release;
+}
+
+ForceSample StageSignal::Receiver::at(SimTime t) const {
+  ForceSample sample = last;
+  sample.force_N = force_N.at(t);
+  sample.torque_N_m = torque_N_m.at(t);
+  sample.transient_N = transient_N.at(t);
+  return sample;
+}
+
 void StageSignal::clear() {
   waiting_.clear();
   delivered_ = {};
+  receiver_ = {};
 }
 
 std::uint64_t StageSignal::next_key(SimTime world) {
@@ -28,29 +44,38 @@ const ForceSample& StageSignal::step(HostTime now, SimTime world, const ForceSam
   const std::uint64_t key = next_key(world);
   if (operators.empty()) {
     waiting_.clear();
+    receiver_ = {};
     return delivered_ = sample;
   }
-  const std::array<Signal, 1> signals{{{0, Quantity::kForce, sample.force_N}}};
-  StreamItem item{.key = key,
-                  .stream = kSignalStream,
-                  .time = world,
-                  .arrival = now,
-                  .publish_ns = to_ns(now),
-                  .paced = world,
-                  .signals = signals};
-  Decision decision = operators.decide(item);
+  const StreamItem item{.key = key,
+                        .stream = kSignalStream,
+                        .time = world,
+                        .arrival = now,
+                        .publish_ns = to_ns(now),
+                        .paced = world,
+                        .signals = {}};
   PendingSample next{now, sample};
+  Decision decision = operators.decide(item, next.sample);
+  const DeadbandDef* const deadband = operators.deadband(world);
+  const bool predicts = deadband && deadband->predictor == Predictor::kLinear;
+  bool predicted = false;
+  if (!predicts) receiver_ = {};
   if (!decision.dropped()) {
-    operators.degrade_force(next.sample, world);
     decision.release = std::max(now, decision.release + decision.shift + operators.presentation_delay(world));
     decision.shift = Nanoseconds(0);
     next.release = decision.release;
+    if (predicts) receiver_.add(world, next);
+  } else if (predicts && !receiver_.force_N.empty() && decision.conceal == Conceal::kHold && decision.why != DropReason::kFreeze) {
+    // As late as the samples that are sent, and never before the newest of them.
+    next.sample = receiver_.at(world);
+    next.release = std::max(now + operators.constant_delay(world), receiver_.release);
+    predicted = true;
   } else {
     // A replacement by zero is as late as the sample that it replaces.
     next.sample = {};
     next.release = now + operators.constant_delay(world);
   }
-  if (!decision.dropped() || decision.conceal == Conceal::kZero) waiting_.push_back(next);
+  if (!decision.dropped() || predicted || decision.conceal == Conceal::kZero) waiting_.push_back(next);
   if (decisions && decision.evaluated) decisions->push_back({key, false, world, decision, now, kSignalStream});
   if (waiting_.size() > kMaxWaiting) waiting_.erase(waiting_.begin());
   for (auto due = waiting_.end(); due != waiting_.begin();)

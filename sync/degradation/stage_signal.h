@@ -1,5 +1,6 @@
 // A force signal at a stage of touch: one computed sample a tick in, the delivered sample out. The newest sample that is due
-// holds until the next one; an older one never follows a newer one. Pure.
+// holds until the next one; an older one never follows a newer one. A deadband with predict=linear instead continues the line
+// through the last two samples that it sent, in the time of the sender. Pure.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +38,17 @@ class StageSignal {
   // A key for the random numbers of this sample: the world may stand still for many ticks.
   std::uint64_t next_key(SimTime world);
 
+  // The receiver of a deadband that predicts: the samples that were sent, part by part.
+  struct Receiver {
+    Prediction force_N{Predictor::kLinear}, torque_N_m{Predictor::kLinear}, transient_N{Predictor::kLinear};
+    ForceSample last;    // sent last
+    HostTime release{};  // of that sample
+    void add(SimTime t, const PendingSample& sent);
+    ForceSample at(SimTime t) const;
+  };
+
   std::vector<PendingSample> waiting_;  // in the order of their ticks
+  Receiver receiver_;
   ForceSample delivered_;
   SimTime world_{SimTime::min()};
   std::uint64_t repeats_ = 0;  // ticks at the same simulated time

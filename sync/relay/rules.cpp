@@ -66,6 +66,8 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
     else
       throw std::invalid_argument("a <pass> has no " + name + "; it has channel, first, rate and deadband");
   }
+  if (rule.thinning.deadband && rule.thinning.deadband->predictor == Predictor::kLinear)
+    throw std::invalid_argument("predict=linear needs a receiver that predicts, and receivers of a relay hold the last message; remove it");
   const Names& known = channels_of_the_bus();
   if (rule.channel.empty())
     throw std::invalid_argument("a <pass> needs a channel, for example channel=\"CONTACT_EVENTS\"");

@@ -33,6 +33,7 @@ WORDS = {
     "export": (["export", "{}"], ["export", "run.lcmlog", "--out", "{}"]),
     "report": (["report", "{}"], ["report", "run.lcmlog", "--out", "{}.html", "--name", "{}"]),
     "log": (["log", "upgrade", "{}", "{}.lcmlog"],),
+    "metrics": (["metrics", "{}"], ["metrics", "run.lcmlog", "--reference", "{}", "--json", "{}"]),
     "rerender": (["rerender", "{}"], ["rerender", "run.lcmlog", "--out", "{}", "--degrade", "{}"]),
     "study": (["study", "check", "{}"], ["study", "run", "{}", "--participant", "{}"], ["study", "sweep", "{}", "--games", "1", "--out", "{}"], ["study", "analyse", "{}"]),
     "sweep": (["sweep", "{}", "--games", "1", "--out", "{}"],),

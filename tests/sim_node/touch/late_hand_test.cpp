@@ -178,3 +178,74 @@ TEST_CASE("The force on a scripted hand at a fixed wall is the same while the wo
   CHECK(*std::max_element(now.begin(), now.end()) > 1.9);
   for (std::size_t i = 0; i < now.size(); ++i) CHECK(late[i] == Approx(now[i]).margin(1e-6));
 }
+
+TEST_CASE("With a deadband the world follows the motion that is sent, and receives each force and each message") {
+  std::mt19937 random(12);
+  std::normal_distribution<double> push(0, 0.02);
+  for (const std::string quantity : {"position", "velocity"})
+    for (const std::string predictor : {"hold", "linear"}) {
+      sync::OperatorChain operators = action_operators("deadband=\"10% " + quantity + " floor=" +
+                                                       (quantity == "position" ? "1mm" : "1mm/s") + " predict=" + predictor + "\"");
+      LateHand hand;
+      sync::Decisions decisions;
+      Vector3d at(0.2, 0.1, 0), v(0.05, 0, 0);
+      int sent = 0;
+      for (int tick = 0; tick < 3000; ++tick) {
+        v += kTick_ns * 1e-9 * (Vector3d(push(random), push(random), 0) * 20 - 0.5 * v);
+        at += kTick_ns * 1e-9 * v;
+        tool_state_t m = numbered(tick);
+        m.proxy.position_m = to_vec3(at);
+        m.proxy_velocity_m_s = to_vec3f(v);
+        m.device = m.proxy;
+        m.force_N = {0, 0, static_cast<float>(tick)};
+        const sync::HostTime now = sync::host_time(tick * kTick_ns);
+        hand.push(m, now, operators, &decisions);
+        std::vector<tool_state_t> out;
+        hand.release(now, sync::sim_time(tick * kTick_ns), operators, out);
+        REQUIRE(out.size() == 1);
+        CHECK(out[0].header.seq == tick);
+        CHECK(out[0].force_N.z == static_cast<float>(tick));
+        sent += !decisions.back().decision.dropped();
+        const Vector3d p = to_eigen(out[0].proxy.position_m), speed = to_eigen(out[0].proxy_velocity_m_s);
+        if (quantity == "position") REQUIRE((p - at).norm() <= std::max(0.1 * p.norm(), 0.001) + 1e-9);
+        if (quantity == "velocity") REQUIRE((speed - v).norm() <= std::max(0.1 * speed.norm(), 0.001) + 1e-6);
+      }
+      INFO(quantity << " " << predictor << ": " << sent << " of 3000");
+      CHECK(sent > 1);
+      CHECK(sent < 1500);
+    }
+}
+
+TEST_CASE("A suppressed motion is as late as a sent one") {
+  sync::OperatorChain operators = action_operators("deadband=\"10% velocity\" delay=\"20ms network\"");
+  LateHand hand;
+  for (int tick = 0; tick < 100; ++tick) {
+    tool_state_t m = numbered(tick);
+    m.proxy_velocity_m_s = {0.1f, 0, 0};
+    m.proxy.position_m = {0.0001 * tick, 0, 0};
+    hand.push(m, sync::host_time(tick * kTick_ns), operators, nullptr);
+    std::vector<tool_state_t> out;
+    hand.release(sync::host_time(tick * kTick_ns), sync::sim_time(tick * kTick_ns), operators, out);
+    REQUIRE(out.size() == (tick < 20 ? 0u : 1u));
+    if (tick < 20) continue;
+    CHECK(out[0].header.seq == tick - 20);
+    // One message was sent; its velocity is integrated.
+    CHECK(out[0].proxy.position_m.x == Approx(0.0001 * (tick - 20)).margin(1e-9));
+  }
+}
+
+TEST_CASE("A deadband of 0 % changes no message of a hand") {
+  sync::OperatorChain operators = action_operators("deadband=\"0% position predict=linear\"");
+  LateHand hand;
+  for (int tick = 0; tick < 100; ++tick) {
+    tool_state_t m = numbered(tick);
+    m.proxy.position_m = {std::sin(0.1 * tick), 0, 0};
+    m.proxy_velocity_m_s = {1, 0, 0};
+    hand.push(m, sync::host_time(tick * kTick_ns), operators, nullptr);
+    std::vector<tool_state_t> out;
+    hand.release(sync::host_time(tick * kTick_ns), sync::sim_time(tick * kTick_ns), operators, out);
+    REQUIRE(out.size() == 1);
+    CHECK(out[0].proxy.position_m.x == m.proxy.position_m.x);
+    CHECK(out[0].touch_status == m.touch_status);
+  }
+}

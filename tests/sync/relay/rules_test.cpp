@@ -52,6 +52,7 @@ TEST_CASE("Invalid relay rules are rejected with their line") {
             .find("there is no channel CONTACT_EVENT; did you mean CONTACT_EVENTS") != std::string::npos);
   CHECK(refusal(within("<pass channel='PRESENTED' rate='5Hz'/>")).find("contains each item once") !=
         std::string::npos);
+  CHECK(refusal(within("<pass channel='TOOL_STATE' deadband='10% predict=linear'/>")).find("needs a receiver that predicts") != std::string::npos);
   CHECK(refusal(within("<pass channel='NODE_HEALTH' deadband='10%'/>"))
             .find("cannot compare messages of NODE_HEALTH") != std::string::npos);
   CHECK(refusal(within("<pass channel='TOOL_STATE' rate='60'/>")).find("has no unit") != std::string::npos);

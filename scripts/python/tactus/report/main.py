@@ -10,19 +10,18 @@
 
 Contents: scene and versions; contacts and their outcomes; rates, missed ticks and time per phase; latency of each hop; asynchrony of
 onsets with published thresholds; events; force with just noticeable differences, position, temperature; the degradation profile and
-its measured effect. The same logs give the same bytes.
+its measured effect; the three metrics that predict success best. The same logs give the same bytes.
 """
 import argparse
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
 from tactus import own_files
 from tactus.log import description
 from tactus.option_parser import OptionParser
-from tactus.paths import BIN, packages_remedy, remedy
+from tactus.paths import packages_remedy
 from tactus.refusal import Refusal
 
 
@@ -54,19 +53,12 @@ def arguments(words):
 
 
 def tables_of(log, folder, run):
-    """Exports the tables of one run of a log for the report into the folder, and prints the warnings about the log."""
-    from tactus.log import log_tables
-    os.makedirs(folder)
-    quiet = ["--run", run, "--quiet"]
-    for words in ([BIN / "summarise", log, "--out", os.path.join(folder, "summary.json"), "--run", run],
-                  [BIN / "export_log", log, "--out", folder, "--channels", log_tables.CHANNELS, *quiet],
-                  [BIN / "export_events", log, "--out", folder, *quiet], [BIN / "export_csv", log, "--out", folder, *quiet]):
-        if not os.access(words[0], os.X_OK):
-            refuse(f"{words[0]} is missing; {remedy('--programs')}")
-        done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
-        # summarise also exits with 1 after a lost event, which the report shows.
-        if done.returncode != 0 and not (words[0].name == "summarise" and os.path.exists(os.path.join(folder, "summary.json"))):
-            refuse((done.stderr.strip().splitlines() or [f"{words[0].name} failed on {log}"])[-1])
+    """Exports the tables of one run of a log for the report into the folder."""
+    from tactus.log import exported, log_tables
+    try:
+        exported.tables_of(log, folder, run, log_tables.CHANNELS)
+    except Refusal as refusal:
+        refuse(refusal)
 
 
 def main(words):

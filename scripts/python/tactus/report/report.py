@@ -1,6 +1,6 @@
 """A report on one or several logs: its sections, in order. The report states which data a log lacks."""
 from tactus.paths import THRESHOLDS
-from tactus.report import sections, traces, words
+from tactus.report import metrics, sections, traces, words
 from tactus.tables import read_rows
 
 
@@ -37,7 +37,7 @@ class Report:
         if len(self.logs) > 1:
             parts.append(sections.comparison(self))
         parts += [section(self) for section in (sections.methods, sections.contacts, sections.processes, sections.latency, sections.asynchrony,
-                                                sections.raster, traces.section, sections.degradation)]
+                                                sections.raster, traces.section, sections.degradation, metrics.section)]
         parts.append("<h2>Missing data</h2>\n")
         parts.append("<ul>" + "".join(f"<li>{words.safe(m)}</li>" for m in [*self.missing, *sections.always_missing(self)]) + "</ul>\n")
         if self.sources:
