@@ -16,8 +16,7 @@
 #include <tactus/node_health_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 
-#include "scripts/simulated_player/arm.h"
-#include "scripts/simulated_player/perception.h"
+#include "scripts/simulated_player/player_body.h"
 #include "scripts/simulated_player/setup.h"
 #include "sim_node/scene/scene_folders.h"
 #include "sync/node/node.h"
@@ -46,11 +45,10 @@ Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::
 int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
   sync::Arguments app;
   sync::NodeOptions options;
-  std::string scene_file, device = "player";
-  double frame_rate_Hz = 60;
+  std::string scene_file, device = "player", player = "stage_model";
   Scatter scatter;
-  ArmDef arm_def;
-  PlayerDef player_def;
+  BodyDef body_def;
+  body_def.rest_m = {kRest_m[0], kRest_m[1], kRest_m[2]};
   options.add_to(app, kSimulatedPlayer);
   app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game").required().existing_file();
   std::vector<std::string> folders;
@@ -58,13 +56,21 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
   app.add_option("--device", device, "name of the device that it controls: haptic_node --device external:NAME").show_default();
   app.add_option("--degrade", options.degrade,
                  "degradation profile (XML) of the observed modalities");
-  app.add_option("--frame-rate", frame_rate_Hz, "rate of the observed pictures, Hz").range(1.0, 1000.0).show_default();
+  app.add_option("--frame-rate", body_def.frame_rate_Hz, "rate of the observed pictures, Hz").range(1.0, 1000.0).show_default();
   app.add_option(
          "--scatter-along", scatter.along_m,
          "half range of each ball's random start position (from the seed), towards its hole or away, m").range(0.0, 0.2);
   app.add_option("--scatter-aside", scatter.aside_m, "half range of each ball's random start position to the side, m").range(0.0, 0.2);
-  app.add_option("--reaction", player_def.reaction_s, "reaction time to sight and hearing, s").range(0.0, 2.0).show_default();
+  app.add_option("--player", player,
+                 "stage_model: fixed rules; observer: perceives and moves as a typical person; observer:N: person N of a population")
+      .show_default();
+  app.add_option("--population", body_def.population_seed, "seed of the population of --player observer:N").show_default();
+  app.add_option("--practice", body_def.practice, "actions whose effects an observer perceived before the game; 0: it does not know the delays")
+      .range(0, 100000)
+      .show_default();
+  app.add_option("--reaction", body_def.stage_model.reaction_s, "of stage_model: reaction time to sight and hearing, s").range(0.0, 2.0).show_default();
   sync::parse_or_exit(app, kSimulatedPlayer.name, argc, argv);
+  body_def.choice = player_choice(player);
   const Rules rules = read_before ? *read_before : read_rules(scene_file, folders);
 
   sync::Node node(kSimulatedPlayer, options);
@@ -72,16 +78,14 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
   auto& forces = node.bus().queue<device_force_t>(channels::kDeviceForce, 64);
   auto& replies = node.bus().queue<sim_reply_t>(channels::kSimReply, 64);
   std::optional<Setup> setup;
-  Perception perception(node, rules, frame_rate_Hz);
-  Player player(rules, player_def);
-  Arm arm(arm_def, Eigen::Vector3d(kRest_m[0], kRest_m[1], kRest_m[2]), options.seed);
+  const std::unique_ptr<PlayerBody> body = make_player_body(node, rules, body_def);
   device_state_t state{};
   state.device = device;
   device_force_t force{};
   sync::HostTime force_arrival{};
   sync::HostTime last_tick{};
-  node.tags().add("goal", "1", [&] { return player.goal(); });
-  node.tags().add("doing", "1", [&] { return static_cast<double>(player.action()); });
+  node.tags().add("goal", "1", [&] { return body->goal(); });
+  node.tags().add("doing", "1", [&] { return static_cast<double>(body->action()); });
   node.set_state(node_health_t::WAITING, "waits for the scene");
 
   while (node.running()) {
@@ -90,28 +94,25 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
       if (m->message.device == device && m->message.header.run_id == options.run_id)
         force = m->message, force_arrival = m->arrival;
     if (scenes.poll(now)) {
-      perception.set_scene(*scenes.scene());
+      body->set_scene(*scenes.scene());
       setup.emplace(node.bus(), *scenes.scene(), rules, places(rules, *scenes.scene(), scatter, options.seed),
                     options.seed);
       node.set_state(node_health_t::RUNNING);
     }
-    Percept percept = perception.perceive(now);
-    const Eigen::Vector3d force_N = force_of(force, force_arrival, now);
-    percept.force_N = perception.felt_N(now, force_N);
-    percept.hand_m = arm.position_m();
+    PlayerBody::Tick tick;
+    tick.now = now;
+    tick.force_N = force_of(force, force_arrival, now);
     // After a late tick the hand moves no further than after one in time.
-    const double dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(last_tick, now)));
-    if (setup && (scatter.along_m > 0 || scatter.aside_m > 0) && !setup->done()) {
-      setup->step(now, replies);
-      percept.balls_m.assign(rules.goals.size(), std::nullopt);  // sight is off before the game begins
-    } else if (scenes.scene()) {
-      arm.step(player.step(percept), force_N, dt_s);
-    }
+    tick.dt_s = std::min(2e-3, sync::to_seconds(now - std::exchange(last_tick, now)));
+    tick.has_scene = scenes.scene() != nullptr;
+    tick.in_setup = setup && (scatter.along_m > 0 || scatter.aside_m > 0) && !setup->done();
+    body->step(tick);
+    if (tick.in_setup) setup->step(now, replies);
     state.header.sim_time_ns = -1;
-    state.pose.position_m = {arm.position_m().x(), arm.position_m().y(), arm.position_m().z()};
+    state.pose.position_m = {body->position_m().x(), body->position_m().y(), body->position_m().z()};
     state.pose.orientation.w = 1;
-    state.velocity_m_s = {static_cast<float>(arm.velocity_m_s().x()), static_cast<float>(arm.velocity_m_s().y()),
-                          static_cast<float>(arm.velocity_m_s().z())};
+    state.velocity_m_s = {static_cast<float>(body->velocity_m_s().x()), static_cast<float>(body->velocity_m_s().y()),
+                          static_cast<float>(body->velocity_m_s().z())};
     state.state = device_state_t::ANSWERS;
     node.bus().publish(channels::kDeviceState, state);
   }

@@ -17,6 +17,7 @@
 
 #include "audio_node/run.h"
 #include "haptic_node/run.h"
+#include "scripts/simulated_player/player_choice.h"
 #include "scripts/simulated_player/rules.h"
 #include "scripts/simulated_player/run.h"
 #include "scripts/virtual_time/referee.h"
@@ -50,6 +51,9 @@ struct GameDef {
   std::uint64_t seed = 1;
   double limit_s = 30;
   std::string profile;  // XML; empty: none
+  std::string player;   // as --player of simulated_player; empty: its default
+  std::uint64_t population = 1;
+  int practice = 0;
 };
 
 // Runs a program with these arguments, as main() gets them.
@@ -91,8 +95,11 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   add("audio_node", words({"audio_node", "--no-sound"}, degraded), audio::run);
   add("visual_node", words({"visual_node", "--no-pictures"}, degraded), visual::run);
   add("thermal_node", words({"thermal_node"}, degraded), thermal::run);
-  add("participant",
-      words(words({"simulated_player", loaded.scene, "--device", "participant"}, loaded.scatter), degraded),
+  std::vector<std::string> player = words({"simulated_player", loaded.scene, "--device", "participant"}, loaded.scatter);
+  if (!game.player.empty())
+    player.insert(player.end(), {"--player", game.player, "--population", std::to_string(game.population), "--practice",
+                                 std::to_string(game.practice)});
+  add("participant", words(player, degraded),
       [&](int argc, char** argv) { return simulated_player::run(argc, argv, &loaded.rules); });
   add("sim_node", words({"sim_node", loaded.scene, "--await", "participant"}, degraded),
       [&](int argc, char** argv) { return sim::run(argc, argv, &loaded.world); });
@@ -165,7 +172,8 @@ json play_in_process(const Loaded& loaded, const GameDef& game) {
 int main(int argc, char** argv) try {
   sync::Arguments app(
       "Plays games of the simulated player in virtual time: a JSON line on stdin for each, "
-      "{\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, and one on stdout.");
+      "{\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML, \"player\": NAME, \"population\": SEED, \"practice\": N}, "
+      "and one on stdout.");
   Loaded loaded;
   std::string
       along = "0.08",
@@ -195,14 +203,19 @@ int main(int argc, char** argv) try {
       throw std::runtime_error("this line names no game: " + line.substr(0, 200));
     json result;
     try {
-      result = play_in_process(loaded, {request.value("seed", std::uint64_t{1}), request.value("limit_s", 30.0),
-                                     request.value("profile", "")});
+      GameDef game;
+      game.seed = request.value("seed", game.seed), game.limit_s = request.value("limit_s", game.limit_s);
+      game.profile = request.value("profile", ""), game.player = request.value("player", "");
+      game.population = request.value("population", game.population), game.practice = request.value("practice", game.practice);
+      if (!game.player.empty()) simulated_player::player_choice(game.player);
+      result = play_in_process(loaded, game);
     } catch (const json::exception& e) {
       throw std::runtime_error(
           "a game is {\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, which this line is not: " +
           line.substr(0, 200));
     }
     result["game"] = request["game"];
+    if (request.contains("player")) result["player"] = request["player"];
     std::cout << result.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
     if (!std::cout) return 1;
   }

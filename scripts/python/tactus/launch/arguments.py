@@ -14,6 +14,7 @@ from tactus.tables import read_rows
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 PLAYER = "participant"  # name of its node, also in recordings
 PLAYER_PROGRAM = "simulated_player"
+PLAYERS = ("stage_model", "observer")  # the first is the default; also observer:NUMBER
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 MIN_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
 FULL_BYTES = 65536  # a disk with less space has refused the last messages: the recorder writes blocks of this size
@@ -54,7 +55,7 @@ class Plan:
     live: int = None  # port of the live page; 0: any free port; None: no page
     programs: dict = dataclasses.field(default_factory=dict)  # of --program: {program: path of the one that replaces it}
     json: pathlib.Path = None  # of --json: a second place for summary.json
-    player: bool = False  # a simulated player holds the device of the first tool
+    player: str = ""  # the simulated player that holds the device of the first tool; "": none
     virtual: list = None  # options of virtual_time; None: a live run in real time
 
     def nodes(self):
@@ -100,7 +101,7 @@ def parse(words, here):
     for option in RECORDING:
         parser.add_argument("--" + option.replace("_", "-"))
     parser.add_argument("--tags", action="append", default=[])
-    parser.add_argument("--player", action="store_true")
+    parser.add_argument("--player", default="")
     parser.add_argument("--virtual-time", action="store_true")
     for option in BUS_OPTIONS:
         parser.add_argument(f"--{option}")
@@ -115,7 +116,7 @@ def parse(words, here):
     for word in words:
         if any(ord(c) < 32 or ord(c) == 127 for c in word):
             raise Refusal(f"argument {word!r}: contains a control character; remove it")
-    a = parser.parse_args(with_live_port(words))
+    a = parser.parse_args(with_player(with_live_port(words)))
     here = pathlib.Path(here)
     scene_path = scene_file(here, a.scene)
     tools = scene.tools(scene_path)
@@ -142,6 +143,8 @@ def parse(words, here):
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
                 port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player,
                 json=(here / a.json).absolute() if a.json else None, programs=programs(here, a.program))
+    if plan.player and not is_player(plan.player):
+        raise Refusal(f"--player={plan.player}: there is no such player; write {', '.join(PLAYERS)} or observer:NUMBER")
     if plan.player:
         if plan.devices or hands.FIRST in plan.without:
             raise Refusal("--player holds the device of the first tool itself; remove --device and --without haptic_node")
@@ -165,6 +168,18 @@ def programs(here, words):
         if not found[name].is_file() or not os.access(found[name], os.X_OK):
             raise Refusal(f"{name}: --program {path} is not a program; name an executable file")
     return found
+
+
+def with_player(words):
+    """Inserts the default player after --player without the name of one."""
+    return [part for word, following in zip(words, [*words[1:], ""])
+            for part in ((word, PLAYERS[0]) if word == "--player" and not is_player(following) else (word,))]
+
+
+def is_player(word):
+    """True for stage_model, observer and observer:NUMBER (scripts/simulated_player/player_choice.h)."""
+    name, colon, number = word.partition(":")
+    return word in PLAYERS or name == "observer" and bool(colon) and number.isascii() and number.isdigit() and int(number) < 2**32
 
 
 def with_live_port(words):
