@@ -1,6 +1,6 @@
-"""Information about a hidden variable in noisy percepts: an ideal observer, who knows the percepts of every value, and mutual information.
+"""Information about a hidden variable in noisy percepts: an ideal observer, which has the percepts of every value, and mutual information.
 
-A rendering is the presentation of one value under one variant. All values have the same variants, so the variant itself tells nothing about the value.
+A rendering is the presentation of one value under one variant. All values have the same variants, so the variant itself carries nothing about the value.
 The observer's posterior is exact: p(value | percepts) is proportional to the sum over the variants of the product over the senses of p(percept | value,
 variant). The information is the mean of H(value) - H(value | percepts) over draws of value, variant and noise.
 """
@@ -16,7 +16,7 @@ Z95 = 1.959963984540054  # normal quantile of 97.5 %
 @dataclasses.dataclass(frozen=True)
 class Percept:
     """A percept of one sense in all renderings. mean, sd: arrays [value, variant, component]; the noise is normal and independent. wrong: share of percepts
-    that are those of a random rendering, of which the observer does not know."""
+    that are those of a random rendering, without a sign of it."""
     sense: str
     mean: np.ndarray
     sd: np.ndarray
@@ -35,7 +35,7 @@ def log_density(y, percept):
 
 def log_likelihoods(percepts, values, variants, lapse, random):
     """{sense: [draw, value, variant]} for drawn percepts of the renderings (values[i], variants[i]). A sense lapses, all its percepts together, with the
-    probability `lapse`; then it tells nothing."""
+    probability `lapse`; then it carries nothing."""
     n = len(values)
     found = {}
     for percept in percepts:
