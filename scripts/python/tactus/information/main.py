@@ -7,7 +7,7 @@ import signal
 import sys
 import tempfile
 
-from tactus import own_files, signals, terminal
+from tactus import signals, terminal
 from tactus.information import noise, percepts, rendering, task_file
 from tactus.information.estimate import Observer
 from tactus.option_parser import OptionParser
@@ -41,9 +41,9 @@ def parsed(words):
     return a
 
 
-def measure(task, a, folder, report_progress=lambda share: None):
+def measure(task, a, folder):
     """The figures of a task. Raises Refusal."""
-    perceived, warnings = percepts.render(task, folder, a.size, a.jobs or len(os.sched_getaffinity(0)), report_progress)
+    perceived, warnings = percepts.render(task, folder, a.size, a.jobs or len(os.sched_getaffinity(0)))
     observer = Observer(percepts.percepts(task, perceived, a.size[0]), a.draws, a.seed, noise.values()["lapse"])
     shares = observer.shares()
     senses = {}
@@ -95,7 +95,8 @@ def run(a):
     with tempfile.TemporaryDirectory() as scratch:
         for task in tasks:
             progress = terminal.report_error if False else lambda share: None
-            figures.append(measure(task, a, pathlib.Path(a.keep).absolute() if a.keep else pathlib.Path(scratch), progress))
+            terminal.report_error(terminal.one_line(f"study information: {task.name}, {len(task.values) * len(task.variants)} renderings"))
+            figures.append(measure(task, a, pathlib.Path(a.keep).absolute() if a.keep else pathlib.Path(scratch)))
             if a.json != "-":
                 print_task(figures[-1])
     text = json.dumps(figures, indent=1) + "\n"

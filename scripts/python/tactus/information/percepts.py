@@ -15,7 +15,7 @@ def renderings(task):
     return [(v, e, (*changes, *variant)) for v, changes in enumerate(task.values.values()) for e, variant in enumerate(task.variants)]
 
 
-def render(task, folder, size, jobs, report_progress=lambda share: None):
+def render(task, folder, size, jobs):
     """Renders every value under every variant; returns ([(features, pictures)] in the order of renderings(), warnings). Raises Refusal."""
     folder = pathlib.Path(folder)
     scenes = [task_file.changed_scene(task.scene, changes) for _, _, changes in renderings(task)]
@@ -29,11 +29,10 @@ def render(task, folder, size, jobs, report_progress=lambda share: None):
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(one, i) for i in range(len(scenes))]
         try:
-            for i, future in enumerate(futures):
+            for future in futures:
                 perceived, said = future.result()
                 found.append(perceived)
                 warnings += said
-                report_progress((i + 1) / len(futures))
         except BaseException:
             for future in futures:
                 future.cancel()
