@@ -12,7 +12,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
 
-from tactus.information import noise, pictures, sound, task_file, touch  # noqa: E402
+from tactus.information import noise, pictures, rendering, sound, task_file, touch  # noqa: E402
 from tactus.refusal import Refusal  # noqa: E402
 
 RATE = 48000
@@ -72,6 +72,10 @@ class TaskFiles(unittest.TestCase):
                 task_file.changed_scene(task.scene, task.variants[0])
             self.assertIn(reason, str(caught.exception))
             self.assertIn("t.task.xml:5: ", str(caught.exception))
+
+    def test_warnings_of_the_scene_are_found_in_the_output_of_a_run(self):
+        self.assertTrue(rendering.WARNING.match('sim_node: /tmp/x/scene.sdf:6: /sdf/world[@name="w"]/wind is not supported and has no effect'))
+        self.assertFalse(rendering.WARNING.match("sim_node: 1000 Hz, virtual time, a bus of this process"))
 
     def test_every_shipped_task_names_its_senses_and_changes_its_scene(self):
         self.assertGreaterEqual(len(task_file.shipped()), 6)

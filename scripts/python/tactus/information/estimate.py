@@ -118,8 +118,8 @@ class Observer:
         self.known = {}
 
     def judged(self, senses):
-        """(information of each draw in bits, whether each answer is right, answers) with these senses alone. Of equal posteriors the first value is the answer
-        of no more draws than its share: the share of right answers is then the expected one."""
+        """(information of each draw in bits, whether each answer is right, answers) with these senses alone. Among equal posteriors the answer is a random
+        choice, which counts with its probability of being right."""
         key = frozenset(senses)
         if key not in self.known:
             p = posterior(sum((self.log_p[s] for s in self.senses if s in key), np.zeros(self.shape)), self.prior)

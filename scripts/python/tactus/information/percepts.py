@@ -37,7 +37,7 @@ def render(task, folder, size, jobs):
             for future in futures:
                 future.cancel()
             raise
-    return found, warnings
+    return found, list(dict.fromkeys(warnings))
 
 
 def percepts(task, perceived, width):

@@ -1,6 +1,7 @@
 """Renders a scene in virtual time: one run of all nodes in one process, then the pictures of its log."""
 import json
 import os
+import re
 import subprocess
 
 import numpy as np
@@ -15,6 +16,7 @@ from tactus.tables import read_rows
 NODES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 PROGRAMS = ("virtual_time", "sim_node", "recorder", "sync_node", *NODES, "export_csv", "export_events")
 LIMIT_S = 600  # of one program; design
+WARNING = re.compile(r"sim_node: .*:\d+: /sdf")  # of the scene: file, line and path
 
 
 def require_programs():
@@ -64,7 +66,7 @@ def render(scene_xml, scene_folder, folder, seconds, size, seed=1):
     settings = {"rate": f"{pictures.LOOKS_HZ}Hz", "width": size[0], "height": size[1], "event_marker": "off", "video_crf": 0, "quality": 0}
     output([BIN / "visual_node", "--log", log, "--video", folder / "video.mp4", "--frames", folder / "frames.csv",
             *(w for name, value in settings.items() for w in ("--set", f"{name}={value}"))])
-    return [line for line in said.splitlines() if line.startswith("sim_node:") and "warning" in line]
+    return [line for line in said.splitlines() if WARNING.match(line)]
 
 
 def perceived(folder, windows, size):
