@@ -48,7 +48,7 @@ install(DIRECTORY visual_node/rooms DESTINATION ${TACTUS_DATA_DIR}/visual_node C
 install(FILES sync/presentation/thresholds.csv DESTINATION ${TACTUS_DATA_DIR}/sync/presentation COMPONENT runtime)
 
 # The command tactus, its Python package, and the packages of studies.
-set(study_packages study psychophysics analysis sweep replication)
+set(study_packages study psychophysics analysis sweep replication information)
 install(PROGRAMS scripts/tactus scripts/setup DESTINATION ${TACTUS_SCRIPTS_DIR} COMPONENT runtime)
 install(FILES scripts/prologue.sh scripts/removed_variables.txt scripts/packages.txt DESTINATION ${TACTUS_SCRIPTS_DIR} COMPONENT runtime)
 set(left_out PATTERN "__pycache__" EXCLUDE PATTERN "README.md" EXCLUDE PATTERN "virtual_time_check" EXCLUDE)

@@ -17,7 +17,7 @@ NAV = (
     ("Tutorials", ("tutorials/README.md", "tutorials/first_scene.md", "tutorials/own_world.md", "tutorials/materials.md", "tutorials/degrade_live.md",
                    "tutorials/record_replay.md", "tutorials/two_machines.md", "tutorials/cave.md", "tutorials/device.md", "tutorials/run_study.md",
                    "tutorials/analyse_study.md", "tutorials/sweep.md", "tutorials/modality.md")),
-    ("Concepts", ("concepts/time.md", "concepts/contacts.md", "concepts/touch.md", "concepts/touch_stages.md", "concepts/degradation.md", "concepts/playout.md", "concepts/studies.md", "concepts/replications.md",
+    ("Concepts", ("concepts/time.md", "concepts/contacts.md", "concepts/touch.md", "concepts/touch_stages.md", "concepts/degradation.md", "concepts/playout.md", "concepts/studies.md", "concepts/tasks.md", "concepts/replications.md",
                   "concepts/logs.md", "glossary.md")),
     ("Reference", ("reference/README.md", "reference/command_line.md", "settings.md", "scene_format.md", "commands.md", "reference/operators.md", "reference/study_elements.md",
                    "results.md", "export.md", "study_formats.md", "reference/messages.md", "reference/channels.md")),

@@ -8,7 +8,7 @@ import sys
 from page_text import PageError
 
 # Verbs that have a help of their own.
-VERBS = {"study": ("check", "run", "sweep", "analyse", "replicate"), "live": ("open", "follow")}
+VERBS = {"study": ("check", "run", "sweep", "analyse", "replicate", "information"), "live": ("open", "follow")}
 # Programs whose help is part of the page: the nodes, and the programs that a user starts directly.
 PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_node", "sync_node", "recorder", "replay", "relay", "spy", "summarise", "export_log",
             "virtual_time", "simulated_player", "trial_runner", "live_server", "save_pictures")

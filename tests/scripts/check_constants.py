@@ -29,6 +29,7 @@ STATUSES = ("read", "quoted", "computed", "design", "unverified")
 # A table: the columns that name a constant, those of its value, and that of its source.
 TABLES = {
     "sync/presentation/thresholds.csv": [(("earlier", "later", "what", "source"), ("threshold_ms",), "source")],
+    "scripts/python/tactus/information/noise.csv": [(("property",), ("value", "unit"), "source")],
     "scripts/python/tactus/study/just_noticeable.csv": [(("property", "situation"), ("jnd", "unit", "criterion", "percent"), "source")],
     "sim_node/scenes/materials.csv": [
         (("name", "=elastic"), ("youngs_modulus_Pa", "poissons_ratio", "density_kg_m3"), "elastic_source"),

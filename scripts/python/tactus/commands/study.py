@@ -5,7 +5,7 @@ from tactus.commands import prepare
 from tactus.paths import SCRIPTS
 
 VERBS = {"check": "tactus.study.check", "run": "tactus.study.run", "sweep": "tactus.sweep.main", "analyse": "tactus.analysis.main",
-         "replicate": "tactus.replication.main"}
+         "replicate": "tactus.replication.main", "information": "tactus.information.main"}
 USAGE = """Usage: tactus study VERB ...
 
   check STUDY.xml                        validates the file; prints the plan, its trials, the duration and the statistical power
@@ -13,6 +13,7 @@ USAGE = """Usage: tactus study VERB ...
   sweep STUDY.xml --games N --out DIR    plays games of the simulated player in virtual time, in parallel on this machine or on a Slurm cluster
   analyse FOLDER...                      computes fits, limits and one report from the results
   replicate [FILE...]                    repeats published experiments with simulated participants, and compares the results
+  information [TASK]...                  measures the information that each sense carries about the hidden variable of a task, in bits
 
 STUDY.xml is a file, or the name of a shipped study:"""
 

@@ -7,7 +7,13 @@ ALONE_BEFORE_S, ALONE_AFTER_S = 0.060, 0.025  # minimum time to the hits before 
 
 
 def read_wav(path):
-    """(samples as floats, mean of the channels; rate in Hz). Parses the file itself, because the module wave reads only integers. Raises Refusal."""
+    """(samples as floats, mean of the channels; rate in Hz). Raises Refusal."""
+    samples, rate = read_channels(path)
+    return samples.sum(axis=1) / samples.shape[1], rate
+
+
+def read_channels(path):
+    """(samples as floats [sample, channel]; rate in Hz). Parses the file itself, because the module wave reads only integers. Raises Refusal."""
     with open(path, "rb") as file:
         data = file.read()
     position, kind, channels, rate, bits = 12, 1, 2, 48000, 16
@@ -25,7 +31,7 @@ def read_wav(path):
             dtype = {(3, 32): "<f4", (1, 16): "<i2", (1, 32): "<i4"}[(kind, bits)]
             body = body[:len(body) - len(body) % (channels * bits // 8)]
             samples = np.frombuffer(body, dtype).astype(float) / (1.0 if kind == 3 else 2.0 ** (bits - 1))
-            return samples.reshape(-1, channels).sum(axis=1) / channels, rate
+            return samples.reshape(-1, channels), rate
         position += 8 + size + size % 2
     raise Refusal(f"{path} has no samples; give the audio.wav of a complete run")
 

@@ -1,0 +1,168 @@
+"""The task file: the scene, the hidden variable, its values and variants, and the windows of perception."""
+import dataclasses
+import pathlib
+import re
+
+from tactus import own_files
+from tactus.paths import SCENES
+from tactus.refusal import Refusal
+from tactus.tables import decoded
+
+SHIPPED = SCENES / "tasks"
+SUFFIX = ".task.xml"
+LARGEST_BYTES = 1_000_000
+MAX_RENDERINGS = 10_000
+SENSES = ("visual", "audio", "haptic", "thermal")
+NAMESPACES = {"tactus": "https://tactus.dev/sdf"}
+SECONDS = {"ms": 1e-3, "s": 1.0}
+CHILDREN = {"task": ("question", "value", "variant", "window"), "value": ("set",), "variant": ("set",), "question": (), "window": (), "set": ()}
+NEEDED = {"task": ("scene", "sense", "seconds"), "value": ("name",), "variant": (), "question": (), "window": ("from", "to"), "set": ("at", "to")}
+
+
+@dataclasses.dataclass(frozen=True)
+class Change:
+    """Sets the text of an element of the scene's world, or with a path that ends in /@NAME an attribute. where: file and line, for messages."""
+    at: str
+    to: str
+    where: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Task:
+    name: str
+    scene: pathlib.Path
+    senses: tuple       # the senses that the task is for
+    seconds: float      # of the world
+    question: str
+    values: dict        # {name of a value: changes of the scene}
+    variants: tuple     # changes of each variant, the same for all values
+    windows: tuple      # (from, to) s of the world; each is perceived for itself
+
+
+def find(text):
+    """Path of a task file; `text` is a path, or the name of a shipped task."""
+    path = pathlib.Path(text)
+    shipped = SHIPPED / (text + SUFFIX)
+    return shipped if path.name == text and not path.is_file() and shipped.is_file() else path
+
+
+def shipped():
+    """Names of the shipped tasks."""
+    return sorted(p.name.removesuffix(SUFFIX) for p in SHIPPED.glob("*" + SUFFIX))
+
+
+def read(text):
+    """Task of a file, or of the shipped task of that name. Raises Refusal with the line."""
+    from lxml import etree  # slow to import
+    path = find(text)
+    try:
+        data = own_files.read_regular(path, LARGEST_BYTES)
+    except OSError as error:
+        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a task file, or one of {', '.join(shipped())}") from None
+    if len(data) > LARGEST_BYTES:
+        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give a task file")
+    decoded(data, text)
+    try:
+        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
+    except (etree.XMLSyntaxError, ValueError) as error:
+        raise Refusal(f"{text}:{getattr(error, 'lineno', 1)}: {str(error).splitlines()[0]}") from None
+    if root.getroottree().docinfo.internalDTD is not None:
+        raise Refusal(f"{text}:1: has a <!DOCTYPE>, but a task file uses no entities; remove it")
+    return Reading(text, path, root).task()
+
+
+class Reading:
+    def __init__(self, text, path, root):
+        self.text, self.path, self.root = text, path, root
+
+    def refuse(self, element, reason):
+        raise Refusal(f"{self.text}:{element.sourceline}: {reason}")
+
+    def check(self, element, kind):
+        """Refuses unknown and missing elements and attributes, here and below."""
+        if element.tag != kind:
+            self.refuse(element, f"<{element.tag}> is not an element of a task file here; write <{kind}>")
+        for name in NEEDED[kind]:
+            if name not in element.attrib:
+                self.refuse(element, f"<{kind}> needs the attribute {name}")
+        for name in element.attrib:
+            if name not in NEEDED[kind]:
+                self.refuse(element, f"<{kind}> has no attribute {name}" + (f"; it has {', '.join(NEEDED[kind])}" if NEEDED[kind] else ""))
+        for child in element:
+            if child.tag not in CHILDREN[kind]:
+                self.refuse(child, f"<{child.tag}> is not an element of <{kind}>" + (f"; write {', '.join(CHILDREN[kind])}" if CHILDREN[kind] else ""))
+            self.check(child, child.tag)
+
+    def seconds(self, element, name):
+        written = re.fullmatch(r"([0-9]+(?:\.[0-9]*)?)(ms|s)", element.get(name).strip())
+        if not written:
+            self.refuse(element, f"{name}=\"{element.get(name)}\" is not a time; write for example 1500ms")
+        return float(written[1]) * SECONDS[written[2]]
+
+    def changes(self, element):
+        return tuple(Change(c.get("at"), c.get("to"), f"{self.text}:{c.sourceline}") for c in element)
+
+    def windows(self, seconds):
+        found = []
+        for element in self.root.iter("window"):
+            begin, end = self.seconds(element, "from"), self.seconds(element, "to")
+            if not begin < end <= seconds:
+                self.refuse(element, f"the window from {begin:g} s to {end:g} s does not lie in the {seconds:g} s of the task; correct from and to")
+            found.append((begin, end))
+        return tuple(found) or ((0.0, seconds),)
+
+    def task(self):
+        self.check(self.root, "task")
+        root = self.root
+        senses = tuple(root.get("sense").split())
+        for sense in senses:
+            if sense not in SENSES:
+                self.refuse(root, f"{sense} is not a sense; choose from {', '.join(SENSES)}")
+        seconds = self.seconds(root, "seconds")
+        if not 0.1 <= seconds <= 600 or not senses:
+            self.refuse(root, "a task needs a sense and 0.1 s to 600 s; correct sense and seconds")
+        values = {}
+        for element in root.iter("value"):
+            if element.get("name") in values:
+                self.refuse(element, f"the value {element.get('name')} occurs twice; rename one")
+            values[element.get("name")] = self.changes(element)
+        variants = tuple(self.changes(element) for element in root.iter("variant")) or ((),)
+        if len(values) < 2 or len(values) * len(variants) > MAX_RENDERINGS:
+            self.refuse(root, f"{len(values)} values and {len(variants)} variants: give 2 values or more, and at most {MAX_RENDERINGS} combinations")
+        question = root.find("question")
+        return Task(self.path.name.removesuffix(SUFFIX).removesuffix(".xml"), self.scene(), senses, seconds,
+                    " ".join((question.text or "").split()) if question is not None else "", values, variants, self.windows(seconds))
+
+    def scene(self):
+        """The scene, beside the task file first, then among those of Tactus."""
+        name = self.root.get("scene")
+        for folder in (self.path.parent, SHIPPED, SCENES):
+            if (folder / name).is_file():
+                return (folder / name).absolute()
+        self.refuse(self.root, f"there is no scene {name} beside the task file; correct scene")
+
+
+def changed_scene(scene, changes):
+    """XML of the scene with these changes, in order. Raises Refusal."""
+    from lxml import etree
+    try:
+        tree = etree.parse(str(scene), etree.XMLParser(resolve_entities=False, no_network=True))
+    except (OSError, etree.XMLSyntaxError) as error:
+        raise Refusal(f"{scene}: cannot be read ({error}); check it with sim_node --check") from None
+    world = tree.getroot().find("world")
+    if world is None:
+        raise Refusal(f"{scene}: has no <world>; give an SDF file with a world")
+    for change in changes:
+        path, _, attribute = change.at.partition("/@")
+        try:
+            found = world.xpath(path, namespaces=NAMESPACES)
+        except etree.XPathError as error:
+            raise Refusal(f"{change.where}: at=\"{change.at}\" is not a path ({error}); write for example model[@name='ball']/pose") from None
+        if not isinstance(found, list) or len(found) != 1 or not isinstance(found[0], etree._Element):
+            raise Refusal(f"{change.where}: at=\"{change.at}\" names {len(found) if isinstance(found, list) else 'no'} elements of the world of {scene.name}; "
+                          "it must name one")
+        if attribute:
+            found[0].set(attribute, change.to)
+        else:
+            found[0].text = change.to
+    return etree.tostring(tree, xml_declaration=True, encoding="UTF-8")
