@@ -34,6 +34,7 @@ WORDS = {
     "report": (["report", "{}"], ["report", "run.lcmlog", "--out", "{}.html", "--name", "{}"]),
     "log": (["log", "upgrade", "{}", "{}.lcmlog"],),
     "rerender": (["rerender", "{}"], ["rerender", "run.lcmlog", "--out", "{}", "--degrade", "{}"]),
+    "rerun": (["rerun", "{}"], ["rerun", "run.lcmlog", "--out", "{}", "--degrade", "{}"], ["rerun", "run.lcmlog", "--scene", "{}", "--tool", "{}"]),
     "study": (["study", "check", "{}"], ["study", "run", "{}", "--participant", "{}"], ["study", "sweep", "{}", "--games", "1", "--out", "{}"], ["study", "analyse", "{}"]),
     "sweep": (["sweep", "{}", "--games", "1", "--out", "{}"],),
     "cluster": (["cluster", "check", "{}"], ["cluster", "up", "--file", "{}"]),
