@@ -53,18 +53,33 @@ class Model(unittest.TestCase):
             np.testing.assert_allclose(K, K_all[-1], rtol=1e-4)
             self.assertAlmostEqual(1, S / S_all[-1], places=5)
 
-    def test_the_innovations_of_the_constant_filter_are_those_of_the_state_space(self):
+    def test_the_probability_is_that_of_the_joint_normal_distribution(self):
+        # The differences of the positions under a stationary intention have a covariance that the state space gives without any filter.
         rng = np.random.default_rng(3)
-        positions, forces = simulated_hands.touching(self.hand, simulated_hands.smooth_path(rng, 1.2), rng)
-        A, push, Q = hand_model.system(self.hand, DT_S)
-        K, S = hand_model.steady(A, Q, self.hand.noise_m)
-        state, expected = hand_model.start_state(self.hand, positions, forces, DT_S), []
-        for x, F in zip(positions, forces):
-            expected.append(-0.5 * ((x - state[0]) ** 2 / S + np.log(2 * np.pi * S)))
-            state = A @ (state + np.outer(K, x - state[0])) + np.outer(push, F)
-        found = hand_model.log_likelihoods(self.hand, positions, forces, DT_S)
-        # Both forget their start by the slowest mode of the filter.
-        np.testing.assert_allclose(found[-300:], np.array(expected)[-300:], rtol=1e-3, atol=1e-3)
+        n, power = 40, 12
+        for hand in (self.hand, dataclasses.replace(self.hand, noise_m=1e-4), dataclasses.replace(self.hand, jumps=1e-7, noise_m=1e-5)):
+            A, push, Q = hand_model.system(hand, DT_S)
+            polynomial = np.polymul(np.polymul([1, -1], np.polymul([1, -1], [1, -1])), np.poly(np.linalg.eigvals(A[:2, :2]))).real
+            # Effect of the noise of each step on the position of later steps, and then on the differences.
+            effects, state = [], np.eye(5)
+            for _ in range(power):
+                effects.append(state[0])
+                state = A @ state
+            weights = np.array([sum(polynomial[j] * effects[i - j] for j in range(min(i, 5) + 1) if i - j < power) for i in range(6)])
+            covariance = np.zeros((n, n))
+            for i in range(n):
+                for j in range(max(0, i - 5), min(n, i + 6)):
+                    lag = abs(i - j)
+                    covariance[i, j] = sum(weights[m + lag] @ Q @ weights[m] for m in range(6 - lag)) + hand.noise_m**2 * sum(
+                        polynomial[m + lag] * polynomial[m] for m in range(6 - lag))
+            positions = rng.normal(0, 1e-4, (n + 5, 2)).cumsum(axis=0)
+            forces = rng.normal(0, 1, (n + 5, 2))
+            driven = np.array([np.convolve(x, polynomial, "valid") for x in positions.T]).T
+            numerator = np.convolve([1, -3, 3, -1], [push[0], A[0, :2] @ push[:2] - np.trace(A[:2, :2]) * push[0]])
+            driven -= np.array([np.convolve(F, numerator, "valid") for F in forces.T]).T[:n]
+            expected = -0.5 * (np.sum(driven * np.linalg.solve(covariance, driven), axis=0) + np.linalg.slogdet(covariance)[1] + n * np.log(2 * np.pi))
+            found = hand_model.log_likelihoods(hand, positions, forces, DT_S).sum(axis=0)
+            np.testing.assert_allclose(found, expected, rtol=1e-5)
 
     def test_the_smoothed_states_are_those_of_the_joint_normal_distribution(self):
         rng = np.random.default_rng(4)
@@ -86,7 +101,9 @@ class Model(unittest.TestCase):
         seen = joint[::5, ::5] + self.hand.noise_m**2 * np.eye(n)
         mean = np.concatenate(means) + joint[:, ::5] @ np.linalg.solve(seen, positions[:, 0] - np.array(means)[:, 0])
         found = hand_model.smoothed_from(self.hand, start, hand_model.MOVING_SD, positions, forces, DT_S)[:, :, 0]
-        np.testing.assert_allclose(found, mean.reshape(n, 5), rtol=1e-4, atol=1e-6 * np.abs(mean.reshape(n, 5)).max(axis=0))
+        for state in range(5):
+            expected = mean.reshape(n, 5)[:, state]
+            np.testing.assert_allclose(found[:, state], expected, rtol=1e-4, atol=1e-5 * np.abs(expected).max())
 
     def test_every_drawn_intention_gives_the_recorded_motion_under_the_recorded_force(self):
         rng = np.random.default_rng(5)
@@ -102,19 +119,19 @@ class Model(unittest.TestCase):
                 again[i] = state[0]
                 if i + 1 < len(positions):
                     state = H @ np.vstack([state, intention[i:i + 1], intention[i + 1:i + 2]]) + push[:, None] * forces[i]
-            # The first second holds the decay of the start, which the recording does not determine.
-            self.assertLess(np.abs(again - positions)[1000:].max(), 2e-5)
+            # The recording does not determine its start, which decays with damping / (2 mass), at least 7.5 1/s: 13e-6 of 50 mm after 1.5 s.
+            self.assertLess(np.abs(again - positions)[1500:].max(), 2e-6)
 
 
 class Fit(unittest.TestCase):
     def test_known_impedances_lie_within_the_intervals_of_random_contacts(self):
         held = {name: 0 for name in identify.POPULATION}
         ratios = {name: [] for name in identify.POPULATION}
-        trials = 60
+        trials = 40
         for seed in range(trials):
             rng = np.random.default_rng(100 + seed)
             hand = random_hand(rng)
-            positions, forces = simulated_hands.touching(hand, simulated_hands.smooth_path(rng, 6.0), rng)
+            positions, forces = simulated_hands.touching(hand, simulated_hands.smooth_path(rng, 5.0), rng)
             positions = positions + rng.normal(0, 1e-6, positions.shape)
             found = identify.fit(positions, forces, DT_S, rng)
             self.assertTrue(found.contact)
@@ -125,7 +142,7 @@ class Fit(unittest.TestCase):
         if os.environ.get("TACTUS_PRINT"):
             print(held, {name: np.round(np.quantile(np.abs(np.log(r)), (0.5, 0.9)), 3) for name, r in ratios.items()})
         for name, count in held.items():
-            self.assertGreaterEqual(count, 51, f"{name}: {count} of {trials}")  # fewer than 51 of 60 at 95 % has the chance 0.0005
+            self.assertGreaterEqual(count, 33, f"{name}: {count} of {trials}")  # fewer than 33 of 40 at 95 % has the chance 0.0006
         # The median is near the truth: half of the hands within 2 % (mass), 5 % (damping), 20 % (stiffness).
         for name, share in zip(identify.POPULATION, (0.02, 0.05, 0.2)):
             self.assertLess(np.median(np.abs(np.log(ratios[name]))), share, name)
@@ -155,8 +172,10 @@ class Fit(unittest.TestCase):
         self.assertFalse(found.contact)
         for name, (median, sd) in identify.POPULATION.items():
             middle, low, high = found.interval(name)
-            self.assertLess(low, median * np.exp(-sd))
-            self.assertGreater(high, median * np.exp(sd))
+            # 400 draws: the standard error of the median is 0.06 sd, of the quantiles 0.13 sd.
+            self.assertAlmostEqual(0, np.log(middle / median) / sd, delta=0.3)
+            self.assertAlmostEqual(-1.96, np.log(low / median) / sd, delta=0.6)
+            self.assertAlmostEqual(1.96, np.log(high / median) / sd, delta=0.6)
 
     def test_a_hand_that_never_moves_is_refused(self):
         with self.assertRaises(ValueError):

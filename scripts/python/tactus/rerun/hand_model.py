@@ -19,7 +19,7 @@ STATES = 5  # x, x', r, r', r''
 # Standard deviations of the state at the start of a log, around its first position: m, m/s, m, m/s, m/s^2. Design: a hand that moves, or is at rest.
 MOVING_SD, RESTING_SD = np.array([1e-3, 0.1, 5e-3, 0.2, 5.0]), np.array([1e-6, 1e-5, 1e-5, 1e-4, 1e-3])
 AT_REST_M, AT_REST_STEPS = 1e-6, 20
-BEFORE = 150  # steps that start the constant filter; design: its slowest mode has decayed
+ORDER = 5   # of the step of the state
 CONVERGED = 1e-8  # relative change of the gain below which it is constant
 
 
@@ -137,10 +137,11 @@ def steady(A, Q, noise_m):
 
 
 def log_likelihoods(hand, positions_m, forces_N, dt_s):
-    """Log probability densities (n - BEFORE - 5, width) of the positions (n, width), m, of segments side by side, given the forces (n, width), N, on the hand.
+    """Log probability densities (n - ORDER, width) of the positions (n, width), m, of segments side by side, given the forces (n, width), N, on the hand.
 
-    The innovations are those of the constant filter: of the third differences of D x - N F, where D and N are the polynomials of the step of the
-    hand. The first BEFORE steps of a segment only start the filter and have no entry."""
+    The third differences of D x - N F, where D and N are the polynomials of the step of the hand, are a moving average of the innovations of the
+    constant filter. The innovations before the segment are unknown, with the same variance, so the probability is exact (Box, Jenkins and Reinsel
+    1994, Time series analysis, section 7.1.4). The first ORDER positions are given."""
     A, push, Q = system(hand, dt_s)
     K, S = steady(A, Q, hand.noise_m)
     forces_N = delayed(forces_N, hand.delay_s, dt_s)
@@ -148,9 +149,19 @@ def log_likelihoods(hand, positions_m, forces_N, dt_s):
     trace, determinant = own[0, 0] + own[1, 1], own[0, 0] * own[1, 1] - own[0, 1] * own[1, 0]
     x, F = positions_m, forces_N
     driven = (x[2:] - trace * x[1:-1] + determinant * x[:-2]) - push[0] * F[1:-1] - (own[0] @ push[:2] - trace * push[0]) * F[:-2]
-    feedback = np.poly(np.linalg.eigvals(A - np.outer(A @ K, [1, 0, 0, 0, 0]))).real
-    errors = signal.lfilter([1.0], feedback, np.diff(driven, 3, axis=0), axis=0)[BEFORE:]
-    return -0.5 * (errors**2 / S + np.log(2 * np.pi * S))
+    average = np.poly(np.linalg.eigvals(A - np.outer(A @ K, [1, 0, 0, 0, 0]))).real
+    errors = signal.lfilter([1.0], average, np.diff(driven, 3, axis=0), axis=0)
+    # before[:, k]: effect of the innovation k + 1 steps before the segment.
+    before = np.zeros((len(errors), ORDER))
+    for k in range(ORDER):
+        before[:ORDER - k, k] = -average[k + 1:]
+    before = signal.lfilter([1.0], average, before, axis=0)
+    basis, root = np.linalg.qr(np.vstack([np.eye(ORDER), before]))
+    residuals = -basis @ (basis[ORDER:].T @ errors)
+    residuals[ORDER:] += errors
+    values = -0.5 * (residuals[ORDER:]**2 / S + np.log(2 * np.pi * S))
+    values[0] -= 0.5 * (residuals[:ORDER]**2).sum(axis=0) / S + np.log(np.abs(np.diag(root))).sum()
+    return values
 
 
 def smoothed(hand, positions_m, forces_N, dt_s):

@@ -4,7 +4,7 @@ import dataclasses
 import numpy as np
 from scipy import optimize
 
-from tactus.rerun.hand_model import BEFORE, Hand, log_likelihoods, starts_at_rest
+from tactus.rerun.hand_model import Hand, log_likelihoods
 
 # Population of hands, for impedances that the log leaves open: log-normal, median and standard deviation of the logarithm. Design: 95 % of it spans hands
 # that hold a stylus (0.02 to 0.57 kg, 3.7 to 28 N s/m, 63 to 533 N/m: Fu and Cavusoglu 2012, table III, as others quote it) and arms (0.7 to 2 kg,
@@ -34,19 +34,14 @@ class Posterior:
 
 
 def segments(positions_m, forces_N, dt_s):
-    """(positions, forces), each (n, width): pieces of SEGMENT_S of each axis in which the hand moves or is pushed, after the BEFORE steps that
-    start the filter, side by side."""
-    # A hand at rest was at rest before the log, too.
-    if starts_at_rest(positions_m, forces_N):
-        positions_m = np.concatenate([np.repeat(positions_m[:1], BEFORE, axis=0), positions_m])
-        forces_N = np.concatenate([np.zeros((BEFORE, forces_N.shape[1])), forces_N])
-    n = min(int(round(SEGMENT_S / dt_s)), len(positions_m) - BEFORE)
+    """(positions, forces), each (n, width): pieces of SEGMENT_S of each axis in which the hand moves or is pushed, side by side."""
+    n = min(int(round(SEGMENT_S / dt_s)), len(positions_m))
     columns = []
-    for first in range(BEFORE, len(positions_m) - n + 1, max(n, 1)):
+    for first in range(0, len(positions_m) - n + 1, n):
         for axis in range(positions_m.shape[1]):
             x, F = positions_m[first:first + n, axis], forces_N[first:first + n, axis]
-            if n > 0 and (np.ptp(x) > MOVED_M or np.ptp(F) > PUSHED_N):
-                columns.append((positions_m[first - BEFORE:first + n, axis], forces_N[first - BEFORE:first + n, axis]))
+            if np.ptp(x) > MOVED_M or np.ptp(F) > PUSHED_N:
+                columns.append((x, F))
     if not columns:
         return np.empty((0, 0)), np.empty((0, 0))
     return tuple(np.array([c[i] for c in columns]).T for i in (0, 1))
@@ -141,4 +136,8 @@ def fit(positions_m, forces_N, dt_s, rng, free_delay=False):
     problem = Problem(x, F, dt_s, free_delay and contact)
     theta = maximum(problem)
     draws = rng.multivariate_normal(theta, covariance(problem, theta), DRAWS, method="eigh")
+    if not contact:  # the smoothness of a motion is no evidence about an impedance
+        n = len(POPULATION)
+        theta[:n] = problem.centre[:n]
+        draws[:, :n] = theta[:n] + rng.standard_normal((DRAWS, n)) / np.sqrt(problem.precision[:n])
     return Posterior(problem.hand(theta), [problem.hand(d) for d in draws], contact)
