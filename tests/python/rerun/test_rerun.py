@@ -23,8 +23,8 @@ def make_log(folder, hand, scene_text, path, seconds, profile=None):
     scene, motion = folder.parent / "scene.sdf", folder.parent / "true.csv"
     scene.write_text(scene_text, encoding="utf-8")
     play.write_motion(motion, np.arange(len(path)) * 1e-3 + play.PATH_BEGINS_S, path)
-    record = types.SimpleNamespace(name="hand", first_tool=True, seed=3, policy="")
-    return play.play(play.words_of(scene, record, hand, motion, profile, [], seconds, folder), 0)
+    record = types.SimpleNamespace(name="hand", tool=0, first_tool=True, seed=3, policy="", external=False, commands=0)
+    return play.play(play.words_of(scene, record, hand, motion, profile, [], seconds, folder), record)
 
 
 class Rerun(unittest.TestCase):

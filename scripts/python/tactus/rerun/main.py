@@ -98,10 +98,6 @@ def profile_names(files):
 def notes_of(record, posterior):
     """Sentences about the limits of this result."""
     notes = [] if posterior.contact else [UNKNOWN]
-    if record.external:
-        notes.append("a separate program held the device: its delay is fitted, and the reruns have none beyond that of a virtual hand")
-    if record.commands:
-        notes.append(f"the log holds {record.commands} commands to the simulation, which the reruns leave out")
     if record.gap_s > recording.GAP_S:
         notes.append(f"the motion of the hand has gaps of up to {1e3 * record.gap_s:.0f} ms, which are interpolated")
     if posterior.contact and (posterior.best.stiffness_N_m > STIFF_N_M or posterior.best.mass_kg > HEAVY_KG):
@@ -123,14 +119,15 @@ def rerun_all(options, record, scene, drawn, profiles):
     os.makedirs(folder)
     for number, (_, intention) in enumerate(drawn, 1):
         motions.append(os.path.join(folder, f"intention_{number}.csv"))
-        play.write_motion(motions[-1], record.time_s, intention)
+        play.write_motion(motions[-1], record.time_s, intention, 0.0 if record.external else play.PATH_BEGINS_S)
     seconds = max(1.0, float(record.time_s[-1]) + 0.05)
     for name, profile in profiles.items():
         forces, positions = [], []
         for number, ((hand, _), motion) in enumerate(zip(drawn, motions), 1):
             print(f"rerun: {name}, hand {number} of {len(drawn)}", file=sys.stderr, flush=True)
             out = os.path.join(folder, name, str(number))
-            time_s, position_m, force_N = play.play(play.words_of(scene, record, hand, motion, profile, options.set, seconds, out), record.tool)
+            words = play.words_of(scene, record, hand, motion, profile, options.set, seconds, out)
+            time_s, position_m, force_N = play.play(words, record, hand, motion, options.log, options.run_number)
             forces.append(play.at(times, time_s, force_N))
             positions.append(play.at(times, time_s, position_m))
         found[name] = np.array(forces), np.array(positions)
