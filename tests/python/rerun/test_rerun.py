@@ -78,6 +78,15 @@ class Rerun(unittest.TestCase):
         self.assertGreater(result["hand"]["mass_kg"]["high"] / result["hand"]["mass_kg"]["low"], 20)
         self.assertLess(result["figures"]["as_logged"]["position_rms_m"], 1e-4)
 
+    def test_a_fit_that_does_not_explain_the_log_is_named(self):
+        from tactus.rerun import hand_model, identify, main
+        record = types.SimpleNamespace(gap_s=0.001)
+        stiff, soft = (identify.Posterior(hand_model.Hand(0.2, 10.0, stiffness, 1.0, 1.0), [], True) for stiffness in (4900.0, 300.0))
+        figures = lambda share: {"as_logged": {"within_10_percent": share}}
+        self.assertEqual([], main.notes_of(record, soft, figures(0.96)))
+        self.assertIn("in 17 % of the ticks with force, so do not use the other rows", main.notes_of(record, soft, figures(0.166))[0])
+        self.assertIn("hardly yields", main.notes_of(record, stiff, figures(1.0))[0])
+
     def test_an_unusable_log_gives_one_sentence(self):
         path = np.tile([0.0, 0.0, 0.2], (1500, 1))
         make_log(self.folder / "log", known_hands.hand("stylus"), known_hands.TASKS["taps"].scene, path, 1.5)

@@ -46,6 +46,7 @@ from tactus.rerun import comparison, hand_model, identify, play, recording
 AS_LOGGED = "as_logged"
 UNKNOWN = ("the hand touches nothing in this log, so its impedance is unknown: the hands are drawn from the population (hands that hold a stylus, and arms), "
            "and only their spread is a result")
+REPRODUCED = 0.95  # design: below this share the fit does not explain the log
 STIFF_N_M, HEAVY_KG = 4000.0, 4.0  # near the limits of the virtual hand: the device did not yield
 PROGRAMS = ("replay", "export_csv", "export_log", "virtual_time")
 
@@ -95,13 +96,18 @@ def profile_names(files):
     return profiles
 
 
-def notes_of(record, posterior):
-    """Sentences about the limits of this result."""
+def notes_of(record, posterior, figures):
+    """Sentences about the limits of this result. figures: {name: figures of the reruns}."""
     notes = [] if posterior.contact else [UNKNOWN]
     if record.gap_s > recording.GAP_S:
         notes.append(f"the motion of the hand has gaps of up to {1e3 * record.gap_s:.0f} ms, which are interpolated")
     if posterior.contact and (posterior.best.stiffness_N_m > STIFF_N_M or posterior.best.mass_kg > HEAVY_KG):
-        notes.append("the hand hardly yields to the force, as that of a playback; the reruns impose its motion")
+        notes.append("the fitted hand hardly yields to the force: the log is that of a playback, or its intention answered the force or the motion of the hand, "
+                     "as that of the simulated player; the impedance is not that of the arm")
+    reproduced = figures[AS_LOGGED]["within_10_percent"]
+    if reproduced < REPRODUCED:
+        notes.append(f"under the profile of the log, the reruns agree with the log in {100 * reproduced:.0f} % of the ticks with force, so do not use the other rows: "
+                     "the world is chaotic, its settings differ (--set), or the hand does not fit")
     return notes
 
 
@@ -190,7 +196,7 @@ def rerun(words):
                                                                          "device_m": (position_m, comparison.band(positions))})
         write_table(os.path.join(options.out, "intention.csv"), record.time_s,
                     {"intention_m": (record.position_m, comparison.band(np.array([r for _, r in drawn])))})
-        hand, notes = hand_figures(posterior), notes_of(record, posterior)
+        hand, notes = hand_figures(posterior), notes_of(record, posterior, figures)
         result = {"log": os.path.abspath(options.log), "scene": str(scene), "profiles": options.profiles, "hand": hand, "notes": notes, "figures": figures}
         with open(os.path.join(options.out, "hand.json"), "w", encoding="utf-8") as file:
             json.dump({**hand, "notes": notes}, file, indent=1)
