@@ -14,6 +14,7 @@
 #include "audio_node/run.h"
 #include "haptic_node/run.h"
 #include "scripts/simulated_player/run.h"
+#include "scripts/virtual_time/rerun_hand.h"
 #include "sim_node/run.h"
 #include "sync/node/node_options.h"
 #include "sync/tools/recorder/recorder_node.h"
@@ -34,6 +35,7 @@ const std::map<std::string, std::function<int(int, char**)>> kPrograms{
     {"thermal_node", thermal::run},
     {"sync_node", sync::run_sync_node},
     {"recorder", sync::run_recorder},
+    {"rerun_hand", run_rerun_hand},
     {"simulated_player", [](int argc, char** argv) { return simulated_player::run(argc, argv); }},
 };
 

@@ -30,7 +30,7 @@ class EveryCommand(unittest.TestCase):
             cls.helps = dict(zip(BY_NAME, pool.map(lambda name: tactus(name, "--help"), BY_NAME)))
 
     def test_the_wanted_commands_exist(self):
-        wanted = ("run replay record rerender report export spy doctor study sweep cluster live degrade playout set simulate convert analyse-modes log setup").split()
+        wanted = ("run replay record rerender rerun report export spy doctor study sweep cluster live degrade playout set simulate convert analyse-modes log setup").split()
         self.assertEqual([], [name for name in wanted if name not in BY_NAME])
 
     def test_help_names_the_command_and_ends_with_examples_and_the_exit_status(self):
@@ -130,7 +130,8 @@ class Pages(unittest.TestCase):
         return done.stdout.split()
 
     def test_bash_completes_commands_verbs_and_options(self):
-        self.assertEqual(["record", "replay", "report", "rerender"], sorted(self.complete("tactus", "re"), key=["record", "replay", "report", "rerender"].index))
+        self.assertEqual(["record", "replay", "report", "rerender", "rerun"],
+                         sorted(self.complete("tactus", "re"), key=["record", "replay", "report", "rerender", "rerun"].index))
         self.assertEqual(["check"], [word for word in self.complete("tactus", "study", "ch") if word == "check"])
         self.assertIn("--without", self.complete("tactus", "run", "--wi"))
         self.assertIn("--seed", self.complete("tactus", "study", "check", "--se"))

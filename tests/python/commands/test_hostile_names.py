@@ -35,6 +35,7 @@ WORDS = {
     "log": (["log", "upgrade", "{}", "{}.lcmlog"],),
     "metrics": (["metrics", "{}"], ["metrics", "run.lcmlog", "--reference", "{}", "--json", "{}"]),
     "rerender": (["rerender", "{}"], ["rerender", "run.lcmlog", "--out", "{}", "--degrade", "{}"]),
+    "rerun": (["rerun", "{}"], ["rerun", "run.lcmlog", "--out", "{}", "--degrade", "{}"], ["rerun", "run.lcmlog", "--scene", "{}", "--tool", "{}"]),
     "study": (["study", "check", "{}"], ["study", "run", "{}", "--participant", "{}"], ["study", "sweep", "{}", "--games", "1", "--out", "{}"], ["study", "analyse", "{}"]),
     "sweep": (["sweep", "{}", "--games", "1", "--out", "{}"],),
     "cluster": (["cluster", "check", "{}"], ["cluster", "up", "--file", "{}"]),

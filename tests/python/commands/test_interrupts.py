@@ -32,6 +32,7 @@ CASES = {
     "report": (["report", "run.lcmlog", "--out", "page.html"], "summarise", "tactus report: interrupted"),
     "export": (["export", "run.lcmlog", "--out", "a/b/tables"], "export_log", "tactus export: interrupted"),
     "rerender": (["rerender", "run.lcmlog", "--only", "audio", "--out", "again"], "audio_node", "rerender: interrupted"),
+    "rerun": (["rerun", "run.lcmlog", "--out", "again"], "replay", "rerun: interrupted"),
     "study check": (["study", "check", "study.xml"], "sync_node", "tactus study: interrupted"),
     "study sweep": (["study", "sweep", "study.xml", "--games", "1", "--out", "sweep"], "play_games",
                     "study sweep: interrupted; no finished game is lost; continue with --resume"),

@@ -68,6 +68,10 @@ GROUPS = {
         Command("rerender", "renders a log again under other degradation profiles, and compares", "tactus.rerender.main", "report", options=("out", "json"),
                 examples=(("rerender out/first --degrade late.xml", "all modalities, without and with the profile"),
                           ("rerender out/first --only audio --twice", "compares two renderings byte by byte"))),
+        Command("rerun", "runs the scene of a log again, with its hand in closed loop, under other profiles", "tactus.rerun.main", "report",
+                options=("out", "json", "seed"),
+                examples=(("rerun out/first --degrade late.xml", "fits the hand of out/first; results in out/first/rerun"),
+                          ("rerun out/first --draws 20 --tool hand --json fit.json", "only under the profile of the log, with 20 hands"))),
     ),
     "Studies": (
         Command("study", "`study check`, `run`, `sweep`, `analyse`, `replicate`: how far can a modality degrade?", "tactus.commands.study", "study",
