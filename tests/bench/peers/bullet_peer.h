@@ -10,7 +10,7 @@
 #include "sim_node/model/body_motion.h"
 #include "sim_node/model/manifold.h"
 #include "sim_node/settings.gen.h"
-#include "tests/bench/peers/ode_peer.h"
+#include "tests/bench/peers/earlier_world.h"
 
 namespace tactus::sim::test {
 

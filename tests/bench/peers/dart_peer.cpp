@@ -70,7 +70,9 @@ struct DartPeer::Engine {
   }
   template <class Joint>
   Joint* pair(const dd::SkeletonPtr& skeleton, dd::BodyNode* parent) {
-    const auto [joint, node] = skeleton->createJointAndBodyNodePair<Joint>(parent);
+    typename Joint::Properties properties;
+    properties.mName = "joint" + std::to_string(bodies.size());
+    const auto [joint, node] = skeleton->createJointAndBodyNodePair<Joint>(parent, properties, dd::BodyNode::AspectProperties("body" + std::to_string(bodies.size())));
     bodies.push_back(node);
     return joint;
   }

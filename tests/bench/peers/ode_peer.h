@@ -1,27 +1,15 @@
-// ODE for comparisons: sim_node's solvers quick and step, with the velocities that ODE's integrator means.
+// ODE for comparisons: sim_node's solvers quick and step.
 #pragma once
 
 #include "sim_node/behaviour/solver.h"
 
 namespace tactus::sim::test {
 
-// ODE, Bullet and DART add a whole step of gravity before they move a body, so that their velocity is that of half a step
-// ago. Bodies start with the velocity of half a step earlier, and then move on the exact parabola. Joints to the world would
-// oppose that velocity, so a world that has one is unchanged.
-struct EarlierWorld {
-  EarlierWorld(const WorldDef& def, double step_s) : earlier(def) {
-    for (const JointDef& j : def.joints)
-      if (j.parent < 0 || j.child < 0) return;
-    for (BodyDef& b : earlier.bodies)
-      if (!b.is_static && b.gravity) b.velocity_m_s -= step_s / 2 * def.gravity_m_s2;
-  }
-  WorldDef earlier;
-};
-
-class OdePeer : private EarlierWorld, public Solver {
+class OdePeer : public Solver {
  public:
-  static constexpr bool kStartsEarlier = true;  // the velocities at the start are those of half a step before
-  OdePeer(const WorldDef& world, const Settings& settings) : EarlierWorld(world, settings.step_s), Solver(earlier, settings) {}
+  // The velocities at the start are those of half a step before, because ODE adds a whole step of gravity before it moves a body.
+  static constexpr bool kStartsEarlier = true;
+  using Solver::Solver;
 };
 
 }  // namespace tactus::sim::test

@@ -34,8 +34,9 @@ std::filesystem::path fresh_folder() {
 std::string broken_law(const RandomWorld& w, bool may_fall) {
   const LawReport r = LawChecker(w, {}).run();
   const auto broken = broken_laws(w, r);
-  for (const Law law : {kFinite, kEnergy, kMomentumLaw, kJoints})
+  for (const Law law : {kFinite, kEnergy, kJoints})
     if (broken[law]) return kLawNames[law];
+  if (r.momentum > 1e-12) return kLawNames[kMomentumLaw];  // linear momentum
   if (broken[kOverlap] && !may_fall) return kLawNames[kOverlap];
   Solver again(w.world, {});
   for (auto left = std::lround(w.seconds / Settings{}.step_s); left > 0; --left) again.step();
