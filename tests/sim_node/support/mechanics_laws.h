@@ -1,17 +1,20 @@
 // Laws of mechanics, checked on a world without a driving force, from poses, velocities, contacts and events only: energy,
-// overlap, momentum, rest, impacts without an event, and bodies held still by force.
+// overlap, momentum, rest, joints, impacts without an event, and bodies held still by force.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <span>
 #include <string>
 #include <tactus/contact_event_t.hpp>
 #include <vector>
 
 #include "sim_node/behaviour/solver.h"
 #include "sim_node/contacts/contact_tracker.h"
+#include "sync/bus/identity.h"
 #include "tests/sim_node/support/penetration_oracle.h"
 #include "tests/sim_node/support/random_worlds.h"
 
@@ -29,14 +32,28 @@ struct LawReport {
   double first_missed_s = -1, first_over_s = -1;
   int unconverged = 0, limited = 0;  // steps, and islands whose impulses were scaled back
   bool finite = true;
+  double joint_gap_m = 0;
+  std::uint64_t state = 0;  // hash of the poses and velocities at the end
+  bool repeats = true;      // the same world gives the same state again; set by the caller
 };
 
-enum Law { kFinite, kEnergy, kRise, kOverlap, kMomentumLaw, kRest, kHeld, kEvents, kLaws };
-inline constexpr std::array<const char*, kLaws> kLawNames{"finite", "over", "rise", "overlap", "momentum", "rest", "held", "events"};
+enum Law { kFinite, kEnergy, kRise, kOverlap, kMomentumLaw, kRest, kHeld, kEvents, kJoints, kRepeats, kLaws };
+inline constexpr std::array<const char*, kLaws> kLawNames{"finite", "over", "rise", "overlap", "momentum", "rest", "held", "events", "joints", "repeats"};
 
-class LawChecker {
+// Hash of poses and velocities, bit-exact.
+inline std::uint64_t hash_of(std::span<const BodyMotion> bodies) {
+  std::uint64_t hash = sync::kFnv1aBegin;
+  const auto add = [&](const auto& values, std::size_t count) { hash = sync::fnv1a_64(hash, values.data(), count * sizeof(double)); };
+  for (const BodyMotion& m : bodies) add(m.position_m, 3), add(m.orientation.coeffs(), 4), add(m.velocity_m_s, 3), add(m.spin_rad_s, 3);
+  return hash;
+}
+
+// Engines other than sim_node's (tests/bench/peers) have the interface of Solver and two constants at most: kStartsEarlier, the
+// velocities at the start are those of half a step before; kReportsNoContacts, it has no contacts and no events.
+template <class Solver>
+class LawCheckerOf {
  public:
-  LawChecker(const RandomWorld& w, const Settings& settings)
+  LawCheckerOf(const RandomWorld& w, const Settings& settings)
       : w_(w), settings_(settings), oracle_(w.world), ids_(1), tracker_(surface_traits(w.world, settings), settings, ids_) {}
 
   LawReport run() {
@@ -51,10 +68,11 @@ class LawChecker {
       solver.step();
       events.clear();
       tracker_.update(sync::SimTime{} + sync::from_seconds(i * h), sync::from_seconds(h), solver.bodies(), solver.contacts(), solver.solved(), events);
-      note_events(solver, events, i);
+      if constexpr (!requires { Solver::kReportsNoContacts; }) note_events(solver, events, i);
       note_energy(solver, i);
       if (i % 7 == 0 && w_.expectation != Expectation::kMomentum) note_overlap(solver);
       if (w_.expectation == Expectation::kMomentum) note_momentum(solver);
+      if (!w_.world.joints.empty()) report_.joint_gap_m = std::max(report_.joint_gap_m, largest_joint_gap_m(w_.world, solver.bodies()));
       if (2 * i >= steps) note_rest(solver, 2 * i < steps + 2, (steps - steps / 2) * h);
       if (const auto* r = solver.report()) {
         report_.held += r->reset_units;
@@ -63,6 +81,7 @@ class LawChecker {
       }
     }
     report_.scale_J = scale();
+    report_.state = hash_of(solver.bodies());
     return report_;
   }
 
@@ -87,7 +106,7 @@ class LawChecker {
           report_.allowance_J += w_.world.bodies[i].mass_kg * w_.world.gravity_m_s2.norm() *
                                  static_cast<double>(w_.world.bodies.size()) * (start_overlap_m_ + 1e-5);
     min_potential_ = 1e300;
-    start_J_ = min_J_ = energy(solver, true);
+    start_J_ = min_J_ = energy(solver, !requires { Solver::kStartsEarlier; });
     start_kinetic_ = start_J_ - min_potential_;
     start_potential_ = min_potential_;
     momentum(solver, linear_, angular_);
@@ -199,6 +218,8 @@ class LawChecker {
   std::vector<int> last_event_;
 };
 
+using LawChecker = LawCheckerOf<Solver>;
+
 // The laws that a world breaks, one flag each.
 inline std::array<bool, kLaws> broken_laws(const RandomWorld& w, const LawReport& r) {
   std::array<bool, kLaws> out{};
@@ -212,6 +233,8 @@ inline std::array<bool, kLaws> broken_laws(const RandomWorld& w, const LawReport
   out[kRest] = w.expectation == Expectation::kRests && (r.creep_m_s > 1e-6 || r.tremble_m_s > 1e-4);
   out[kHeld] = r.held > 0;
   out[kEvents] = r.missed > 0;
+  out[kJoints] = r.joint_gap_m > 1e-5;  // as small as an overlap
+  out[kRepeats] = !r.repeats;
   return out;
 }
 

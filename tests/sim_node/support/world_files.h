@@ -1,5 +1,5 @@
 // Scene files as worlds for the laws of mechanics. The first comment of a file may give its duration (seconds 0.5) and
-// its expectation (expect static, rest or momentum).
+// its expectation (expect static, rest or momentum), and say that bodies touch or overlap at the start (touching).
 #pragma once
 
 #include <fstream>
@@ -25,6 +25,7 @@ inline RandomWorld world_of_file(const std::string& file) {
     std::string what, which;
     words >> what;
     if (what == "seconds") words >> w.seconds;
+    if (what == "touching") w.touching = true;
     if (what != "expect") continue;
     words >> which;
     w.expectation = which == "momentum"                     ? Expectation::kMomentum
