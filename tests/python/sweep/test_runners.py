@@ -73,6 +73,18 @@ class Runners(unittest.TestCase):
                 self.assertEqual([[str(folder.path), str(n)] for n in (1, 2, 3)], self.recorded())
         self.no_trap_sprung()
 
+    def test_every_job_keeps_to_one_processor_and_the_processors_are_shared_equally(self):
+        job = self.script("asks", "#!/usr/bin/python3 -I\nimport os, sys\nwith open({file!r}, 'a') as out:\n    out.write(str(sorted(os.sched_getaffinity(0))) + '\\n')\nsys.stdin.read()\n")
+        allowed = sorted(os.sched_getaffinity(0))
+        with mock.patch.object(runners, "JOB", [job]):
+            runner = runners.Parallel(self.folder("out"), range(2 * len(allowed)), 2 * len(allowed))
+            runner.fill()
+            places = sorted(runner.place.values())
+            self.wait(runner)
+        self.assertEqual(sorted(2 * allowed), places)
+        self.assertEqual(sorted([processor] for processor in 2 * allowed), self.recorded())
+        self.assertEqual(len(allowed), runner.workers)
+
     def test_a_job_of_a_cluster_gets_the_folder_unchanged(self):
         for program, text in (("sbatch", SBATCH), ("squeue", "#!/bin/sh\necho COMPLETED\n"), ("scancel", "#!/bin/sh\n")):
             self.script(program, text)

@@ -15,6 +15,7 @@ class ChunkFile:
     """Locks the file until close(). Raises Busy, OSError."""
 
     def __init__(self, path):
+        self.times = times_file(path)
         self.file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
         try:
             fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -27,7 +28,8 @@ class ChunkFile:
             os.write(self.file, line(trial_table.COLUMNS))
         self.done = {int(r["trial"]) for r in rows(whole)}
 
-    def append(self, row):
+    def append(self, row, seconds=None):
+        """Appends the row of a game. seconds: the measured time that the game took, for the remaining time of the sweep."""
         sentence = trial_table.wrong(row)
         if sentence:
             raise ValueError(sentence)
@@ -35,9 +37,26 @@ class ChunkFile:
         if os.write(self.file, whole) != len(whole):
             raise OSError(28, "No space left on device")
         self.done.add(row["trial"])
+        if seconds is not None:
+            with open(self.times, "a", encoding="utf-8") as times:
+                times.write(f"{seconds:.4f}\n")
 
     def close(self):
         os.close(self.file)
+
+
+def times_file(path):
+    """The file of the measured times of a chunk's games."""
+    return path.with_suffix(".times")
+
+
+def times(path):
+    """Measured times of the games of a chunk, s; games that another sweep or build played have none."""
+    try:
+        text = times_file(path).read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return []
+    return [float(seconds) for seconds in text[:text.rfind("\n") + 1].split()]
 
 
 def line(fields):

@@ -9,6 +9,7 @@ import os
 import pathlib
 import signal
 import sys
+import time
 
 from tactus import signals
 from tactus.refusal import Refusal
@@ -25,9 +26,13 @@ def play(folder, number):
     except Busy:
         return
     try:
+        begun = time.monotonic()  # the first game of a chunk includes the start of the player
         with Player(folder.study.scene) as player:
             for game in (g for g in folder.chunks[number] if g.number not in file.done):
-                file.append(virtual_games.row(folder.study, game, player.play(virtual_games.request(folder.study, game))))
+                row = virtual_games.row(folder.study, game, player.play(virtual_games.request(folder.study, game)))
+                now = time.monotonic()
+                file.append(row, now - begun)
+                begun = now
     finally:
         file.close()
 

@@ -9,7 +9,7 @@ from tactus import signals, terminal
 from tactus.paths import remedy
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import study_file
-from tactus.sweep import adopted, player
+from tactus.sweep import adopted, player, progress
 from tactus.sweep.runners import Parallel, Slurm
 from tactus.sweep.sweep_folder import SweepFolder
 
@@ -33,7 +33,7 @@ def parsed(words):
     p.add_argument("--out", required=True, metavar="DIR", help="folder of the sweep")
     p.add_argument("--resume", action="store_true", help="continues the sweep in DIR")
     p.add_argument("--from", dest="table", metavar="TABLE", help="games.csv, or .csv.xz, of an earlier sweep, whose matching games are reused")
-    p.add_argument("--jobs", type=int, metavar="J", help="parallel jobs on this machine; default: one for each core")
+    p.add_argument("--jobs", type=int, metavar="J", help="parallel jobs on this machine, each on one processor; default: one for each processor")
     p.add_argument("--slurm", action="store_true", help="plays as an array job of a Slurm cluster, which needs access to DIR and this repository")
     p.add_argument("--partition", help="partition of Slurm; default: that of the cluster")
     p.add_argument("--array-size", type=int, default=64, metavar="K", help="tasks of the array job; default: 64")
@@ -61,10 +61,6 @@ def new(a):
     return SweepFolder.begin(a.out, study, a.games)
 
 
-def duration(seconds):
-    return f"{seconds / 3600:.1f} h" if seconds > 5400 else f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
-
-
 def follow(folder, runner):
     """Prints the progress until the runner ends."""
     begun, (before, of) = time.monotonic(), folder.done()
@@ -74,10 +70,9 @@ def follow(folder, runner):
         now = time.monotonic() - begun
         if over or now - said >= REPORT_S:
             said = now
-            done = folder.done()[0]
-            rate = (done - before) / max(now, 1e-9)
-            rest = f", {duration((of - done) / rate)} left" if rate > 0 and done < of else ""
-            print(f"sweep: {done} of {of} games, {rate:.2f} a second{rest}", flush=True)
+            chunks = progress.chunks_of(folder)
+            done = of - sum(chunk.left for chunk in chunks)
+            print(progress.sentence(done, of, (done - before) / max(now, 1e-9), progress.remaining(chunks, runner.workers)), flush=True)
         if over:
             return
         time.sleep(POLL_S)

@@ -19,6 +19,12 @@ def needed(program, package):
         raise Refusal(f"{program} is not installed; run apt install {package}")
 
 
+def keep_on(processor):
+    """For Popen: the child and its children run on this processor only. Where that is not allowed, they run on any."""
+    with contextlib.suppress(OSError):
+        os.sched_setaffinity(0, {processor})
+
+
 def die_with_parent():
     """For Popen: the child gets SIGTERM when this process ends for any reason."""
     pr_set_pdeathsig = 1
@@ -36,12 +42,16 @@ def interrupts_held():
 
 
 class Parallel:
-    """Plays chunks on the cores of this machine, each in its own process, from the first poll() on. A failed chunk does not stop the others."""
+    """Plays chunks on this machine, each in its own process, from the first poll() on. A failed chunk does not stop the others.
+
+    Each process keeps to one of the processors that this process may use, the one with the fewest jobs: the processes of a game wait for each other, so a
+    second processor would help none, and a move costs caches."""
 
     def __init__(self, folder, chunks, jobs):
         self.waiting = list(chunks)
+        self.processors = sorted(os.sched_getaffinity(0))
         self.jobs, self.words = jobs, [*JOB, str(folder.path.absolute())]
-        self.running = []
+        self.running, self.place = [], {}  # jobs; the processor of each
         self.errors = folder.path / "errors.txt"
         self.errors.write_bytes(b"")
 
@@ -49,13 +59,22 @@ class Parallel:
         """Starts waiting chunks until `jobs` run."""
         while self.waiting and len(self.running) < self.jobs:
             words = [*self.words, str(self.waiting.pop(0))]
+            used = [self.place[job.pid] for job in self.running]
+            processor = min(self.processors, key=used.count)
             with open(self.errors, "ab") as errors, interrupts_held() as mask:
-                def prepare(mask=mask):
+                def prepare(mask=mask, processor=processor):
                     die_with_parent()
+                    keep_on(processor)
                     signal.pthread_sigmask(signal.SIG_SETMASK, mask)
                 # A new session, so that Ctrl-C reaches only the sweep, which ends its jobs.
                 self.running.append(subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, start_new_session=True,
                                                      preexec_fn=prepare))
+                self.place[self.running[-1].pid] = processor
+
+    @property
+    def workers(self):
+        """Chunks that are played at the same time, each with the speed of one processor at most."""
+        return min(self.jobs, len(self.processors))
 
     def poll(self):
         """Starts the next chunks. True when all are finished."""
@@ -96,7 +115,7 @@ class Slurm:
         if done.returncode != 0:
             raise Refusal(f"sbatch refused the jobs: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
         self.job = done.stdout.strip().split(";")[0]
-        self.over = False
+        self.over, self.workers = False, last + 1  # workers: tasks that run, or all until the first is seen to run
 
     def script(self, listed):
         """The batch script, which sbatch reads from stdin."""
@@ -106,7 +125,9 @@ class Slurm:
         """True when no task of the array is pending or running."""
         done = subprocess.run(["squeue", "--noheader", "--jobs", self.job, "--states=all", "--format=%T"], capture_output=True, text=True, check=False)
         gone = done.returncode != 0 and "Invalid job id" in done.stderr  # Slurm has removed the finished job
-        self.over = gone or done.returncode == 0 and all(state in SETTLED for state in done.stdout.split())
+        states = done.stdout.split()
+        self.workers = states.count("RUNNING") or self.workers
+        self.over = gone or done.returncode == 0 and all(state in SETTLED for state in states)
         return self.over
 
     def said(self):
