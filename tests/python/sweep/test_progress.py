@@ -40,7 +40,7 @@ class Progress(unittest.TestCase):
     def test_a_condition_without_a_game_is_counted_like_the_mean_of_the_others_and_said_so(self):
         chunks = [Chunk("a", 0, [1.0] * 9), Chunk("b", 0, [3.0]), Chunk("c", 10, []), Chunk("d", 5, [])]
         left = progress.remaining(chunks, 1)
-        self.assertEqual((30, 2), (left.seconds, left.unmeasured))  # the mean of the conditions is 2 s, whatever their numbers of games
+        self.assertEqual((30, 2), (left.seconds, left.unmeasured))  # the mean of the conditions is 2 s, for any numbers of games
         self.assertEqual("sweep: 10 of 25 games, 2.00 a second, 30 s left if the 2 conditions without a game yet are like the others",
                          progress.sentence(10, 25, 2, left))
 
