@@ -59,7 +59,7 @@ class Interrupted(unittest.TestCase):
         (here / "run.lcmlog").write_bytes(b"\xed\xa1\xda\x01" + bytes(24))
         (here / "sound.wav").write_bytes(bytes(100))
         (here / "study.xml").write_text(STUDY, encoding="utf-8")
-        for other in (*deployment.PROGRAMS, "summarise", "export_csv", "export_events", "play_games"):
+        for other in (*deployment.PROGRAMS, "summarise", "export_csv", "export_events", "export_log", "virtual_time", "play_games"):
             self.write(programs / other, "#!/bin/sh\necho '{}'\n")  # as the description of a log, for example
         if program:
             self.write(programs / program, WAITS)
