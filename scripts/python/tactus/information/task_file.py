@@ -3,14 +3,12 @@ import dataclasses
 import pathlib
 import re
 
-from tactus import own_files
+from tactus import own_xml
 from tactus.paths import SCENES
 from tactus.refusal import Refusal
-from tactus.tables import decoded
 
 SHIPPED = SCENES / "tasks"
 SUFFIX = ".task.xml"
-LARGEST_BYTES = 1_000_000
 MAX_RENDERINGS = 10_000
 SENSES = ("visual", "audio", "haptic", "thermal")
 NAMESPACES = {"tactus": "https://tactus.dev/sdf"}
@@ -55,19 +53,7 @@ def read(text):
     """Task of a file, or of the shipped task of that name. Raises Refusal with the line."""
     from lxml import etree  # slow to import
     path = find(text)
-    try:
-        data = own_files.read_regular(path, LARGEST_BYTES)
-    except OSError as error:
-        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a task file, or one of {', '.join(shipped())}") from None
-    if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give a task file")
-    decoded(data, text)
-    try:
-        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
-    except (etree.XMLSyntaxError, ValueError) as error:
-        raise Refusal(f"{text}:{getattr(error, 'lineno', 1)}: {str(error).splitlines()[0]}") from None
-    if root.getroottree().docinfo.internalDTD is not None:
-        raise Refusal(f"{text}:1: has a <!DOCTYPE>, but a task file uses no entities; remove it")
+    root, _ = own_xml.root_of(path, text, "a task file", shipped())
     return Reading(text, path, root).task()
 
 

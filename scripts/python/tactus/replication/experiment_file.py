@@ -2,15 +2,13 @@
 import dataclasses
 import pathlib
 
-from tactus import own_files
+from tactus import own_xml
 from tactus.paths import SCRIPTS
 from tactus.psychophysics import functions, procedures
 from tactus.refusal import Refusal
-from tactus.tables import decoded
 
 SCHEMA = pathlib.Path(__file__).with_name("replication.xsd")
 SHIPPED = SCRIPTS / "studies" / "published"
-LARGEST_BYTES = 1_000_000
 MAX_TRIALS = 100_000  # of one participant
 # Kinds of measures: the needed attributes beside id, kind and of; the things named by `of`; their number, None: one or more.
 KINDS = {"fit": (("function", "value"), "condition", 1), "mean": (("outcome",), "condition", None), "slope": (("outcome",), "condition", 1),
@@ -103,19 +101,7 @@ def read(text):
     """Experiment of a file, or the shipped one of that name. Raises Refusal with the line."""
     from lxml import etree  # slow to import
     path = find(text)
-    try:
-        data = own_files.read_regular(path, LARGEST_BYTES)
-    except OSError as error:
-        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a file, or one of {', '.join(p.stem for p in shipped())}") from None
-    if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give a published experiment")
-    decoded(data, text)
-    try:
-        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
-    except etree.XMLSyntaxError as error:
-        raise Refusal(f"{text}:{error.lineno}: {error.msg.splitlines()[0]}") from None
-    if root.getroottree().docinfo.internalDTD is not None:
-        raise Refusal(f"{text}:1: has a <!DOCTYPE>, but these files use no entities; remove it")
+    root, _ = own_xml.root_of(path, text, "a published experiment", (p.stem for p in shipped()))
     if root.tag == "study":
         raise Refusal(f"{text}:1: is a study file; run it with tactus study run, or give a <replication>")
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))

@@ -7,16 +7,14 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from tactus import own_files
+from tactus import own_xml
 from tactus.paths import SCENES, SCRIPTS
 from tactus.psychophysics import functions, observers
 from tactus.refusal import Refusal
 from tactus.study import conditions, procedure_element, quantities, stages, texts
-from tactus.tables import decoded
 
 SCHEMA = pathlib.Path(__file__).with_name("study.xsd")
 SHIPPED = SCRIPTS / "studies"
-LARGEST_BYTES = 1_000_000
 MAX_CONDITIONS = 2000
 MAX_LEVELS = 100_000  # of a pair; equals procedure_element.MAX_TRIALS with one trial a level
 YES_OR_NO = ("synchrony", "order", "two_interval")  # answers that a psychometric function describes
@@ -120,20 +118,7 @@ def read(text, with_scene=True):
     Refusal with the line."""
     from lxml import etree  # slow to import
     path = find(str(text))
-    try:
-        data = own_files.read_regular(path, LARGEST_BYTES)
-    except OSError as error:
-        shipped = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
-        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a study file, or one of {shipped}") from None
-    if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give a study file")
-    decoded(data, text)
-    try:
-        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
-    except etree.XMLSyntaxError as error:
-        raise Refusal(f"{text}:{error.lineno}: {error.msg.splitlines()[0]}") from None
-    if root.getroottree().docinfo.internalDTD is not None:
-        raise Refusal(f"{text}:1: has a <!DOCTYPE>, but a study file uses no entities and no defaults; remove it and write its entities out")
+    root, data = own_xml.root_of(path, text, "a study file", sorted(p.stem for p in SHIPPED.glob("*.xml")))
     encoding = root.getroottree().docinfo.encoding
     if encoding and encoding.upper() not in ENCODINGS:
         raise Refusal(f"{text}:1: declares the encoding {encoding}; save the file as UTF-8, and declare that")

@@ -1,0 +1,28 @@
+"""XML files of the user: studies, tasks and experiments. Reads one without entities, network access or large amounts of memory."""
+from tactus import own_files
+from tactus.refusal import Refusal
+from tactus.tables import decoded
+
+LARGEST_BYTES = 1_000_000
+
+
+def root_of(path, text, kind, shipped):
+    """(root element, bytes) of the file at `path`. text: the file as the user named it, for messages; kind: "a study file", for example; shipped: names of
+    the shipped files of this kind. Raises Refusal with the line."""
+    from lxml import etree  # slow to import
+    try:
+        data = own_files.read_regular(path, LARGEST_BYTES)
+    except OSError as error:
+        raise Refusal(f"{text}: cannot be read ({error.strerror}); give {kind}, or one of {', '.join(shipped)}") from None
+    if len(data) > LARGEST_BYTES:
+        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give {kind}")
+    decoded(data, text)
+    try:
+        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
+    except etree.XMLSyntaxError as error:
+        raise Refusal(f"{text}:{error.lineno}: {error.msg.splitlines()[0]}") from None
+    except ValueError as error:
+        raise Refusal(f"{text}:1: {str(error).splitlines()[0]}") from None
+    if root.getroottree().docinfo.internalDTD is not None:
+        raise Refusal(f"{text}:1: has a <!DOCTYPE>, but {kind} uses no entities and no defaults; remove it and write its entities out")
+    return root, data
