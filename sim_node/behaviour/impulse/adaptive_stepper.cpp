@@ -146,7 +146,10 @@ void AdaptiveStepper::resolve_overlaps(World& world, ContactSource& source, doub
   };
   for (int round = 0; round < kMaxRounds && std::any_of(new_contacts_.begin(), new_contacts_.end(), overlaps);
        ++round) {
-    world.separate(new_contacts_, kUnreliableOverlap_m);
+    const double gained_J = world.separate(new_contacts_, kUnreliableOverlap_m);
+    // The energy that lifts bodies comes from the approach of the surfaces. Otherwise bodies that overlap in many steps,
+    // as where a rotating surface sinks below its linear path, would gain energy.
+    if (gained_J > 0) world.stop_approach(new_contacts_, 0, gained_J);
     ++report_.separation_rounds;
     source.find(world.motions(), world.active_bodies(), next, new_contacts_);
   }
@@ -254,6 +257,7 @@ const RecoveryReport& AdaptiveStepper::step(World& world, ContactSource& source,
     dt = std::min({2 * dt, next, h});
     if (h - elapsed > 1e-9 * h) world.restore_loads(saved_);
   }
+  if (report_.substeps > 1) world.centre_velocities(h);
   report_.max_overlap_m = max_depth_m(contacts);
   return report_;
 }

@@ -70,9 +70,13 @@ bool Collisions::will_touch(const ContactPoint& p, PredictedImpact& out) const {
   return true;
 }
 
-// Speed gained within the step, for example by gravity, is not a collision.
+// Speed gained within a step, by gravity or since a rotating surface leaves its linear path, is not a collision.
 bool Collisions::will_collide(const ContactPoint& p, PredictedImpact& out) const {
-  return will_touch(p, out) && out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::abs(p.drift_m_s.x());
+  if (!will_touch(p, out)) return false;
+  const double drift = p.drift_m_s.x(), least = limits_.bounce_speed_m_s + 2 * std::abs(drift);
+  if (out.speed_m_s <= least || p.gap_m > kTouching_m) return out.speed_m_s > least;
+  const double bend = std::min(0.0, rows_->path_bend_m(p, *velocity_, h_));
+  return out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::max(std::abs(drift), std::abs(drift + bend / h_));
 }
 
 double Collisions::approach(const ContactGroup& g) const {

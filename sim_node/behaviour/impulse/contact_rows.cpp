@@ -52,6 +52,16 @@ void ContactRows::clear() {
   pool.clear();
 }
 
+double ContactRows::path_bend_m(const ContactPoint& p, const Velocities& v, double h) const {
+  const Eigen::Vector3d n = p.axes.row(0);
+  const auto towards_centre = [&](int twist, const Eigen::Vector3d& arm) {
+    if (!twist) return 0.0;
+    const Eigen::Vector3d& w = v.twists[static_cast<std::size_t>(twist)].angular_rad_s;
+    return w.dot(arm) * w.dot(n) - arm.dot(n) * w.squaredNorm();
+  };
+  return h * h / 2 * (towards_centre(p.b, p.arm_b) - towards_centre(p.a, p.arm_a));
+}
+
 void ContactRows::add_velocity(const ContactPoint& p, const Velocities& v, Eigen::Vector3d& out) const {
   for (int c = 0; c < p.couplings; ++c) {
     const Coupling& k = couplings[static_cast<std::size_t>(p.first_coupling + c)];

@@ -80,6 +80,9 @@ class ContactRows {
   // Relative velocity of the surface of b with respect to a, in the point's axes.
   Eigen::Vector3d velocity(const ContactPoint& p, const Velocities& v) const;
   void apply(const ContactPoint& p, const Eigen::Vector3d& impulse, Velocities& v) const;
+  // Distance along the normal by which the surfaces leave their linear path within h_s, since both rotate: positive
+  // where they open. h^2 / 2 n . (w x (w x r)) of b, less that of a.
+  double path_bend_m(const ContactPoint& p, const Velocities& v, double h_s) const;
   // The same as solve(), with support for points that press before the surfaces meet.
   static Eigen::Vector3d solve_point(const ContactPoint& p, const Eigen::Vector3d& impulse, const Eigen::Vector3d& v) {
     return p.penalty_force == PenaltyForce::kNone ? solve(p, impulse, v) : solve_penalty(p, impulse, v);

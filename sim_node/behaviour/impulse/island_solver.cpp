@@ -290,7 +290,7 @@ bool IslandSolver::solve(ContactRows& rows, std::span<const int> points, double 
 
 // With impulses scaled by s the kinetic energy changes by s w + s^2 q / 2, where w is the sum of impulse times
 // velocity without them, and q that of impulse times the velocity that they add. The change is at most zero up to
-// s = -2 w / q. Required separating speeds, which only joints have, may add energy.
+// s = -2 w / q. Required separating speeds of joints, which correct overlaps, may add energy.
 bool IslandSolver::limit_energy(ContactRows& rows, std::span<const int> points, const Velocities& before, Velocities& velocity) {
   double w = 0, q = 0, wanted = 0, size = 0;
   for (const int i : points) {
@@ -298,7 +298,7 @@ bool IslandSolver::limit_energy(ContactRows& rows, std::span<const int> points, 
     const Vector3d first = rows.velocity(p, before), last = rows.velocity(p, velocity);
     w += p.impulse.dot(first);
     q += p.impulse.dot(last - first);
-    wanted += p.impulse.x() * std::max(0.0, p.min_speed_m_s);
+    if (p.couplings > 0) wanted += p.impulse.x() * std::max(0.0, p.min_speed_m_s);
     size += std::abs(p.impulse.dot(first)) + std::abs(p.impulse.dot(last));
   }
   if (w + q / 2 <= wanted + kEnergyRounding * size) return false;

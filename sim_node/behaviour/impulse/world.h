@@ -3,6 +3,7 @@
 // shapes: contacts are an argument.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -112,12 +113,17 @@ class World {
   // Resets a unit to its saved pose. It keeps its momentum, except that which gravity added in the step of step_s.
   void hold(int unit, const SavedStep& saved, double step_s);
   // Resolves the approach of overlapping surfaces as an impact without restitution and friction: impulses act on both
-  // sides, so that momentum is constant, and take energy. contacts: of the current poses; those that are not deeper
-  // than min_overlap_m are ignored.
-  void stop_approach(std::span<const Manifold> contacts, double min_overlap_m);
+  // sides, so that momentum is constant, and take at most max_energy_J. contacts: of the current poses; those that are
+  // not deeper than min_overlap_m are ignored.
+  void stop_approach(std::span<const Manifold> contacts, double min_overlap_m,
+                     double max_energy_J = std::numeric_limits<double>::max());
   // Resolves overlaps by the smallest displacement that the contacts allow, weighted by inertia. Changes positions
-  // only, not velocities. contacts: of the current poses. Overlaps deeper than max_overlap_m are ignored.
-  void separate(std::span<const Manifold> contacts, double max_overlap_m);
+  // only, not velocities. contacts: of the current poses. Overlaps deeper than max_overlap_m are ignored. Returns the
+  // energy that free bodies gain: by their weight, and by their spin about turned axes of inertia.
+  double separate(std::span<const Manifold> contacts, double max_overlap_m);
+  // Sets the velocities of free bodies in motions() to those at the middle of a step of h_s that ends now. Call it after
+  // the last part of a divided step: the velocities belong to the middle of that part.
+  void centre_velocities(double h_s);
 
   // Changes between steps, in force from the next step on. The velocity of a link acts like an impulse: the other
   // joints take their share (Featherstone 2008, section 11.7). Functions return false when the body is not free or
@@ -162,9 +168,11 @@ class World {
   void build_joints(double h);
   void couple(ContactPoint& p, int system, int link_a, int link_b, const Eigen::Vector3d& point_m);
   void set_required_speeds(double h);
+  double followed_bend_m(const ContactPoint& p, double h) const;
   void write_results(std::span<Manifold> contacts, double h) const;
   void update_inertia(std::span<const Manifold> contacts);
-  void separate(std::size_t system);
+  void limit_stopping(double max_energy_J);
+  void separate_links(std::size_t system);
   void refresh(System& system);
   int dof_of(int body, int axis) const;
   static void place(BodyMotion& m, const BodyMotion& at);

@@ -17,6 +17,11 @@ constexpr double kStopped_m_s = 1e-9;
 constexpr int kMaxCorrectionSweeps = 40;
 constexpr double kCorrected_m = 1e-8;
 
+double spin_energy_J(const FreeBody& b) {
+  const Eigen::Vector3d spin = b.orientation.conjugate() * b.spin_rad_s;
+  return spin.dot(b.inertia_kg_m2 * spin) / 2;
+}
+
 }  // namespace
 
 void World::save(SavedStep& out) {
@@ -98,7 +103,25 @@ void World::hold(int unit, const SavedStep& saved, double step_s) {
   refresh(s);
 }
 
-void World::stop_approach(std::span<const Manifold> contacts, double min_overlap_m) {
+// Scales the impulses of the rows, so that they take at most this energy. u: speed of a point after them, before - that
+// without them. With impulses J scaled by s the energy changes by s J before + s^2 J (u - before) / 2, and J u is about 0.
+void World::limit_stopping(double max_energy_J) {
+  double taken = 0;
+  const auto speed = [&](const ContactPoint& p) { return rows_.velocity(p, velocity_).x(); };
+  scratch_.clear();
+  for (const ContactPoint& p : rows_.points) scratch_.push_back(speed(p));
+  for (const ContactPoint& p : rows_.points)
+    if (p.impulse.x() > 0) rows_.apply(p, {-p.impulse.x(), 0, 0}, velocity_);
+  for (std::size_t i = 0; i < rows_.points.size(); ++i)
+    taken -= rows_.points[i].impulse.x() * (speed(rows_.points[i]) + scratch_[i]) / 2;
+  const double share = taken <= max_energy_J ? 1 : 1 - std::sqrt(std::max(0.0, 1 - max_energy_J / taken));
+  for (ContactPoint& p : rows_.points) {
+    p.impulse.x() *= share;
+    if (p.impulse.x() > 0) rows_.apply(p, p.impulse, velocity_);
+  }
+}
+
+void World::stop_approach(std::span<const Manifold> contacts, double min_overlap_m, double max_energy_J) {
   overlapping_.clear();
   for (const Manifold& m : contacts) {
     Manifold& kept = overlapping_.emplace_back(m);
@@ -132,6 +155,7 @@ void World::stop_approach(std::span<const Manifold> contacts, double min_overlap
     }
     if (change < kStopped_m_s) break;
   }
+  limit_stopping(max_energy_J);
   for (const int unit : active_) {
     const std::size_t i = index(unit);
     if (i < free_.size()) {
@@ -162,7 +186,8 @@ void World::correct_positions(double h) {
   lift_.assign(rows_.points.size(), 0);
   for (std::size_t i = 0; i < rows_.points.size(); ++i) {
     const ContactPoint& p = rows_.points[i];
-    end_gap_m_[i] = p.gap_m + h * rows_.velocity(p, velocity_).x() - (p.correction_m > 0 ? p.gap_m + p.correction_m : std::min(0.0, p.gap_m));
+    const double bend = p.couplings == 0 ? followed_bend_m(p, h) : 0;
+    end_gap_m_[i] = p.gap_m + h * rows_.velocity(p, velocity_).x() + bend - (p.correction_m > 0 ? p.gap_m + p.correction_m : std::min(0.0, p.gap_m));
   }
   for (int sweep = 0; sweep < kMaxCorrectionSweeps; ++sweep) {
     double change = 0;
@@ -191,7 +216,7 @@ void World::update_inertia(std::span<const Manifold> contacts) {
     }
 }
 
-void World::separate(std::span<const Manifold> contacts, double max_overlap_m) {
+double World::separate(std::span<const Manifold> contacts, double max_overlap_m) {
   activate_all();
   for (const int unit : active_) {
     const std::size_t i = index(unit);
@@ -218,21 +243,25 @@ void World::separate(std::span<const Manifold> contacts, double max_overlap_m) {
     }
     if (change < kSettled_m) break;
   }
+  double gained = 0;
   for (const int unit : active_) {
     const std::size_t i = index(unit);
     if (i < free_.size()) {
       const Twist& by = velocity_.twists[i + 1];
       if (by.linear_m_s.isZero(0) && by.angular_rad_s.isZero(0)) continue;
+      const double before = spin_energy_J(free_[i]);
       displace(free_[i], by.linear_m_s, by.angular_rad_s);
       place(motions_[index(body_of_[i])], motion_of(free_[i]));
+      gained += spin_energy_J(free_[i]) - before - free_[i].mass_kg * free_[i].gravity_m_s2.dot(by.linear_m_s);
     } else {
-      separate(i - free_.size());
+      separate_links(i - free_.size());
     }
   }
+  return gained;
 }
 
 // Moves an articulated system by the result.
-void World::separate(std::size_t s) {
+void World::separate_links(std::size_t s) {
   const std::span<const double> by(velocity_.rates.data() + first_rate_[s], first_rate_[s + 1] - first_rate_[s]);
   if (std::all_of(by.begin(), by.end(), [](double x) { return x == 0; })) return;
   systems_[s].system.displace(by);
@@ -247,6 +276,11 @@ void World::place(BodyMotion& m, const BodyMotion& at) {
   m.centre_m = at.centre_m;
   m.orientation = at.orientation;
   m.inverse_inertia = at.inverse_inertia;
+}
+
+void World::centre_velocities(double h_s) {
+  for (const int unit : active_)
+    if (index(unit) < free_.size()) motions_[index(body_of_[index(unit)])].velocity_m_s = velocity_for(free_[index(unit)], h_s);
 }
 
 }  // namespace tactus::sim::impulse

@@ -10,8 +10,27 @@ namespace {
 // A gap below which surfaces touch, m. Design value: five times the residual that the sweeps leave between resting
 // surfaces.
 constexpr double kWarmGap_m = 1e-5;
+// Distance of a rotating surface from its linear path that is left to the correction of positions, m: a hundredth of the
+// overlap that may remain.
+constexpr double kNegligibleBend_m = 1e-7;
 
 }  // namespace
+
+// Distance along the normal by which the surfaces leave their linear path in this step, where that changes a contact:
+// - Where a surface sinks below its linear path, it needs to rise first.
+// - Where its path rises, the change of its spin without a torque (drift) may point downwards by as much. A force against
+//   this drift alone would add energy.
+double World::followed_bend_m(const ContactPoint& p, double h) const {
+  double bend = rows_.path_bend_m(p, velocity_, h);
+  if (bend > kNegligibleBend_m) {
+    const auto drift_of = [&](int twist, const Eigen::Vector3d& arm) -> Eigen::Vector3d { return drift_.twists[index(twist)].angular_rad_s.cross(arm); };
+    double drift = 0;
+    if (p.b) drift += drift_of(p.b, p.arm_b).dot(p.axes.row(0));
+    if (p.a) drift -= drift_of(p.a, p.arm_a).dot(p.axes.row(0));
+    bend = std::min(bend, std::max(0.0, -h * drift));
+  }
+  return std::abs(bend) > kNegligibleBend_m ? bend : 0;
+}
 
 // Sets the minimum separating speeds: a gap closes at most to zero. Overlaps are corrected by positions, since a speed
 // that is required between wedged surfaces may need any force. Only joints, which have no position offset, get it.
@@ -25,6 +44,10 @@ void World::set_required_speeds(double h) {
     const double offset = rows_.velocity(p, position_offset_).x(), gap = p.gap_m + offset;
     if (p.couplings == 0) {
       p.min_speed_m_s = -std::max(0.0, gap) / h;
+      // A surface that needs to rise does so at most at a speed at which the contact adds no energy: the speed at the
+      // start of the step, which is the mean less the drift, is at most reversed.
+      if (const double bend = followed_bend_m(p, h); bend != 0)
+        p.min_speed_m_s = std::min(p.min_speed_m_s - bend / h, std::max(0.0, 2 * p.drift_m_s.x() - rows_.velocity(p, velocity_).x()));
       p.correction_m = h * correction_speed(-p.gap_m);
       has_corrections_ |= p.correction_m > 0 || gap < std::min(0.0, p.gap_m);
     } else if (p.gap_m >= 0 || gap >= 0) {

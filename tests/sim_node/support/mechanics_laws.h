@@ -118,7 +118,7 @@ class LawCheckerOf {
     }
     last_event_.assign(w_.world.bodies.size(), -100);
   }
-  // Translation is known at the middle of a step, so half a step of gravity is added.
+  // Translation is known at the middle of a step, also of a divided one, so half a step of gravity is added.
   double energy(const Solver& solver, bool current) {
     double kinetic = 0, potential = 0;
     const Vector3d& g = w_.world.gravity_m_s2;
@@ -136,11 +136,7 @@ class LawCheckerOf {
     return kinetic + potential;
   }
   void note_energy(const Solver& solver, int step) {
-    double now = energy(solver, false);
-    // The velocity of a divided step belongs to the middle of its last part.
-    if (solver.report() && solver.report()->substeps > 1)
-      for (std::size_t i = 0; i < w_.world.bodies.size(); ++i)
-        if (moves(i)) now -= w_.world.bodies[i].mass_kg * solver.bodies()[i].velocity_m_s.norm() * w_.world.gravity_m_s2.norm() * settings_.step_s / 2;
+    const double now = energy(solver, false);
     if (now - start_J_ > report_.over_J) report_.over_J = now - start_J_;
     if (report_.first_over_s < 0 && now - min_J_ > 1e-3 * scale() + report_.allowance_J) report_.first_over_s = step * settings_.step_s;
     report_.rise_J = std::max(report_.rise_J, now - min_J_);
