@@ -202,7 +202,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
 void WebServer::Impl::accept() {
   acceptor.async_accept([self = shared_from_this()](Code e, tcp::socket socket) {
-    if (e == boost::asio::error::operation_aborted) return;
+    if (!self->acceptor.is_open()) return;
     // A browser sends its request at once and takes the answer, so that idle connections give way to new ones.
     if (!e && (self->connections < kMaxConnections || self->close_oldest())) {
       Code ignored;
@@ -248,6 +248,7 @@ WebServer::~WebServer() {
   Code ignored;
   impl_->acceptor.close(ignored);
   impl_->pages.clear();
+  impl_->io.poll();  // the handler of the closed acceptor owns impl_
 }
 
 void WebServer::run_for(std::chrono::nanoseconds max_wait) { impl_->io.run_for(max_wait); }

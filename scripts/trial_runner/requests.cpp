@@ -93,7 +93,8 @@ Request parse_request(std::string_view line) {
   const json j = json::parse(line, nullptr, false);
   if (!j.is_object() || j.size() != 1)
     refuse("a request is a JSON object with one member, for example {\"end\": true}");
-  const auto& [what, value] = *j.items().begin();
+  const std::string& what = j.begin().key();
+  const json& value = j.begin().value();
   const auto object = [&]() -> const json& {
     if (!value.is_object()) refuse(what + " is not a JSON object");
     return value;
