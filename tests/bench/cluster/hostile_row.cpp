@@ -9,6 +9,7 @@
 #include <tactus/device_force_t.hpp>
 #include <tactus/thermal_device_t.hpp>
 #include <tactus/thermal_state_t.hpp>
+#include <vector>
 
 #include "sync/bus/decode.h"
 #include "sync/bus/identity.h"
@@ -23,9 +24,10 @@ using namespace std::chrono_literals;
 constexpr double kFelt_N = 0.3;
 // After the last hostile message: 0.3 s for a successor, 2.5 s for the scene of another sender, a lift of the hand.
 constexpr sync::Nanoseconds kReturn = 4s;
-// Bounded memories fill in the first half; later growth has no bound. Queues and histories vary by some hundred kB. In 90,000 ticks of a
-// row a leak of 24 bytes a tick passes this limit.
-constexpr double kMaxGrowth_kB = 1024;
+// Bounded memories fill in the first quarter; later growth has no bound. Messages that wait for their time vary by some hundred kB, so
+// medians of whole quarters are compared. In 90,000 ticks of a row a leak of 6 bytes a tick passes this limit.
+constexpr double kMaxGrowth_kB = 256;
+constexpr int kMemorySamples = 1024;  // of each row
 
 const std::map<std::string, unsigned, std::less<>> kOutputOf{
     {channels::kTouchModel, kWorld}, {channels::kContactEvents, kWorld}, {channels::kContacts, kWorld},     {channels::kWorldState, kWorld},
@@ -36,6 +38,18 @@ const std::map<std::string, unsigned, std::less<>> kOutputOf{
 double allocated_kB() {
   const auto info = mallinfo2();
   return 1e-3 * static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+// Growth of memory from the second quarter of its samples to the last one: the difference of their medians.
+double growth(const std::vector<double>& samples) {
+  const auto median_of_quarter = [&](std::size_t quarter) {
+    const auto at = [&](std::size_t q) { return samples.begin() + static_cast<std::ptrdiff_t>(q * samples.size() / 4); };
+    std::vector<double> part(at(quarter), at(quarter + 1));
+    const auto middle = part.begin() + static_cast<std::ptrdiff_t>(part.size() / 2);
+    std::nth_element(part.begin(), middle, part.end());
+    return *middle;
+  };
+  return median_of_quarter(3) - median_of_quarter(1);
 }
 
 std::vector<std::string> channels_except(const std::vector<std::string>& except) {
@@ -168,13 +182,15 @@ HostileResult run_row(const HostileRow& row, int milliseconds, unsigned seed, bo
     sync::VirtualTime& time = cluster.time();
     std::optional<Attacker> owned;
     if (hostile) owned.emplace(row, time, seed, attacker);
-    double half_kB = 0;
+    std::vector<double> memory_kB;
+    memory_kB.reserve(2 * kMemorySamples);
+    const int between = std::max(1, milliseconds / kMemorySamples);
     for (int ms = 0; ms < milliseconds; ++ms) {
-      if (ms == milliseconds / 2) half_kB = allocated_kB();
+      if (ms % between == 0) memory_kB.push_back(allocated_kB());
       if (attacker) attacker->attack();
       time.run_for(1ms);
     }
-    result.growth_kB = allocated_kB() - half_kB;
+    result.growth_kB = growth(memory_kB);
     outputs.hashing = false;
     time.run_for(kReturn);
     if (hostile && row.returns && outputs.felt < time.now() - 1s) add_fault(result.faults, "touch", "the force does not return");

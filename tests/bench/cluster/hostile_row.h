@@ -32,7 +32,7 @@ struct HostileResult {
   std::int64_t ticks = 0, messages = 0;
   Hashes hashes;
   double peak_N = 0, dose_s = 0, cold_s = 0;
-  double growth_kB = 0;  // of the allocated memory, over the second half
+  double growth_kB = 0;  // of the allocated memory, from the median of the second quarter to that of the last
   std::string faults;    // limits that were passed, in words; empty: none
 };
 

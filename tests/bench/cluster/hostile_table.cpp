@@ -4,7 +4,7 @@
 //    bin/hostile_table [--ticks N] [--full] [--seed N] [--only TEXT] [--check] [--json FILE]
 //
 // Each row is one kind of message on a group of channels, one a millisecond on each. Prints messages, largest force, exposure
-// of the skin to warmth and cold, growth of the allocated memory in the second half, outputs that differ from those of an
+// of the skin to warmth and cold, growth of the allocated memory after the first quarter, outputs that differ from those of an
 // undisturbed cluster although they must not, and passed limits. --full: 10^6 ticks in all. --check: exit 1 when a row fails.
 #include <CLI/CLI.hpp>
 #include <cstdio>
