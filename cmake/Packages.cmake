@@ -49,7 +49,7 @@ macro(tactus_package component name summary description)
     set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${control}/postinst ${control}/prerm)
   endif()
   # The files that every Debian package has. The changelog has the format of Debian (Debian policy 4.4); CHANGELOG.md is in tactus-doc.
-  file(WRITE ${control}/changelog "${name} (${version}) unstable; urgency=medium\n\n  * The changes are in /usr/share/doc/tactus-doc/CHANGELOG.md (package tactus-doc).\n\n -- ${TACTUS_MAINTAINER}  ${commit_date}\n")
+  file(WRITE ${control}/changelog "${name} (${version}) unstable; urgency=medium\n\n  * The changes are in CHANGELOG.md of the package tactus-doc.\n\n -- ${TACTUS_MAINTAINER}  ${commit_date}\n")
   execute_process(COMMAND gzip -9nc ${control}/changelog OUTPUT_FILE ${control}/changelog.gz)
   install(FILES ${control}/changelog.gz DESTINATION share/doc/${name} COMPONENT ${component})
   install(FILES LICENSE DESTINATION share/doc/${name} RENAME copyright COMPONENT ${component})
