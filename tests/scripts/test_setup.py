@@ -129,7 +129,7 @@ class Setup(unittest.TestCase):
 
     def test_the_check_lists_every_group_and_an_unknown_one_is_refused(self):
         _, said = self.setup("--check", status=1)
-        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "docs", "portability", "peers", "test"):
+        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "docs", "clang", "portability", "peers", "test"):
             self.assertIn(f"packages for {group}: missing ", said)
         for name in ("servers", "", "build run", "$(touch sprung)"):
             self.assertIn("there is no group", self.setup(name, status=1)[1])
