@@ -17,6 +17,11 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(version ${PROJECT_VERSION})
+# Of the source, so that equal sources give equal packages.
+execute_process(COMMAND git -C ${PROJECT_SOURCE_DIR} log -1 --format=%aD OUTPUT_VARIABLE commit_date OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT commit_date)
+  set(commit_date "Thu, 1 Jan 1970 00:00:00 +0000")
+endif()
 
 # tactus_package(COMPONENT NAME SUMMARY DESCRIPTION [ARCHITECTURE a] [SECTION s] [DEPENDS packages] [RECOMMENDS packages] [SHLIBDEPS] [PYTHON])
 # SHLIBDEPS: the packages of its shared libraries are added by dpkg-shlibdeps. PYTHON: compiles its modules once at installation, and removes
@@ -43,9 +48,10 @@ macro(tactus_package component name summary description)
     file(WRITE ${control}/prerm "#!/bin/sh\nset -e\nif command -v py3clean >/dev/null; then py3clean -p ${name}; fi\n")
     set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${control}/postinst ${control}/prerm)
   endif()
-  # The files that every Debian package has.
-  execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${CMAKE_BINARY_DIR}/packaging/changelog.gz)
-  install(FILES ${CMAKE_BINARY_DIR}/packaging/changelog.gz DESTINATION share/doc/${name} COMPONENT ${component})
+  # The files that every Debian package has. The changelog has the format of Debian (Debian policy 4.4); CHANGELOG.md is in tactus-doc.
+  file(WRITE ${control}/changelog "${name} (${version}) unstable; urgency=medium\n\n  * The changes are in CHANGELOG.md of the package tactus-doc.\n\n -- ${TACTUS_MAINTAINER}  ${commit_date}\n")
+  execute_process(COMMAND gzip -9nc ${control}/changelog OUTPUT_FILE ${control}/changelog.gz)
+  install(FILES ${control}/changelog.gz DESTINATION share/doc/${name} COMPONENT ${component})
   install(FILES LICENSE DESTINATION share/doc/${name} RENAME copyright COMPONENT ${component})
 endmacro()
 

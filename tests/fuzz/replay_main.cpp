@@ -1,7 +1,8 @@
 // Runs a fuzz target without libFuzzer: its seeds and regressions, then RUNS mutations of them, the same in every run.
 //
-//    fuzz_NAME RUNS FOLDER...
+//    fuzz_NAME RUNS [--from N] FOLDER...
 //
+// --from N: begins with mutation number N, to continue an earlier run.
 // A failing input is written to fuzz_NAME.failed in the current folder; keep it under tests/fuzz/regressions/NAME.
 #include <fcntl.h>
 #include <signal.h>
@@ -118,13 +119,15 @@ void change(Bytes& b, const Bytes& other, std::mt19937& random) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::cerr << "usage: fuzz_NAME RUNS FOLDER...: replays the seeds of the folders and RUNS mutations of them\n";
+  const bool continued = argc > 4 && std::string(argv[2]) == "--from";
+  if (argc < 3 || (!continued && std::string(argv[2]).starts_with("--"))) {
+    std::cerr << "usage: fuzz_NAME RUNS [--from N] FOLDER...: replays the seeds of the folders and RUNS mutations of them, from number N\n";
     return 1;
   }
+  const long first = continued ? std::atol(argv[3]) : 0;
   const std::string name = std::filesystem::path(argv[0]).filename();
   failed_path = (std::filesystem::current_path() / (name + ".failed")).string();
-  const std::vector<Bytes> seeds = seeds_of({argv + 2, argv + argc});
+  const std::vector<Bytes> seeds = seeds_of({argv + (continued ? 4 : 2), argv + argc});
   if (seeds.empty()) {
     std::cerr << name << ": there is no seed in the folders; see tests/fuzz/README.md\n";
     return 1;
@@ -137,7 +140,7 @@ int main(int argc, char** argv) {
   };
   for (const Bytes& seed : seeds) present = seed, run();
   const long runs = std::atol(argv[1]);
-  for (long i = 0; i < runs; ++i) {
+  for (long i = first; i < first + runs; ++i) {
     std::mt19937 random(static_cast<unsigned>(i));
     present = seeds[below(random, seeds.size())];
     const Bytes& other = seeds[below(random, seeds.size())];

@@ -3,8 +3,6 @@ import re
 import shutil
 import subprocess
 
-# Names of the releases, as debootstrap writes them.
-RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 # Settings of apt that a proxy or a mirror needs. The names of hosts in them stay on this machine.
 APT_SETTINGS = re.compile(r'^Acquire::(?:(?:http|https)::(?:Proxy|Proxy-Auto-Detect|Timeout)|Retries|Check-Valid-Until|Check-Date) "[^"]+";$', re.I)
 # Variables that programs need to reach the network.

@@ -11,6 +11,7 @@ sys.path.insert(0, str(HERE))
 
 import checkout
 import machine
+import targets
 import totals
 
 LISTS = """http://mirror.example/debian/ Debian bookworm
@@ -108,6 +109,27 @@ class Totals(unittest.TestCase):
 
     def test_a_text_without_tests_has_none(self):
         self.assertEqual({"passed": 0, "failed": 0, "skipped": 0, "names": []}, totals.totals("ninja: no work to do\n"))
+
+
+class Targets(unittest.TestCase):
+    def test_each_step_needs_packages_and_build_but_no_tests_before_it(self):
+        trixie = targets.TARGETS["trixie"]
+        self.assertEqual(["packages", "build", "run"], targets.steps_until(trixie, "run"))
+        self.assertEqual(["packages"], targets.steps_until(trixie, "packages"))
+        self.assertEqual(list(trixie.steps), targets.steps_until(trixie, None))
+        self.assertEqual(["packages", "build", "unit"], targets.steps_until(targets.TARGETS["arm64"], "unit"))
+
+    def test_arm64_takes_libraries_of_arm64_and_tools_of_this_machine(self):
+        for name in targets.ARM64_PACKAGES:
+            library = name.startswith("lib") and name not in ("libeigen3-dev", "libcli11-dev")
+            self.assertEqual(library or name.startswith("catch2"), name.endswith(":arm64"), name)
+        for test in targets.ARM64_TESTS:
+            self.assertIn(test, targets.ARM64["build"])
+
+    def test_arm64_has_no_run_of_a_scene(self):
+        done = subprocess.run([HERE / "run", "arm64", "--only", "run"], capture_output=True, text=True, check=False)
+        self.assertEqual(2, done.returncode)
+        self.assertIn("packages, build, unit", done.stderr)
 
 
 class Help(unittest.TestCase):

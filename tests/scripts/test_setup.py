@@ -1,6 +1,7 @@
 """Tests of scripts/setup with an apt-get, a dpkg and a systemctl that only record: a run installs no server, and no service is enabled."""
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -32,11 +33,11 @@ for word; do
   case $word in install) seen=yes ;; -*) ;; *) [ $seen = no ] || { echo "$word" >>"$RECORD"; echo "$word" >>"$STATE"; } ;; esac
 done
 """
-# The package lists of a system without libsdformat-dev; with HAS_ALL=1, of one with it. Without lists, nothing is known.
+# The package lists of a system without libsdformat-dev and a-browser; with HAS_ALL=1, of one with them. Without lists, nothing is known.
 APT_CACHE = """#!/bin/sh
 [ -e "$LISTS" ] || exit 100
 for word; do name=$word; done
-[ "$name" != libsdformat-dev ] || [ "$HAS_ALL" = 1 ] || exit 100
+case $name in libsdformat-dev | a-browser) [ "$HAS_ALL" = 1 ] || exit 100 ;; esac
 """
 RECORDER = """#!/bin/sh
 echo "${0##*/} $*" >>"$RECORD"
@@ -63,10 +64,10 @@ class Setup(unittest.TestCase):
             path.write_text(text, encoding="utf-8")
             path.chmod(0o755)
 
-    def setup(self, *words, status=0, has_all="1"):
+    def setup(self, *words, status=0, has_all="1", scripts=SCRIPTS):
         """(lines that the programs recorded, output). has_all: "0" for a system whose package lists have no libsdformat-dev."""
         self.record.write_text("", encoding="utf-8")
-        done = subprocess.run([SCRIPTS / "setup", *words], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL,
+        done = subprocess.run([scripts / "setup", *words], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL,
                               env={**os.environ, "PATH": f"{self.top / 'bin'}:{os.environ['PATH']}", "STATE": str(self.state), "RECORD": str(self.record),
                                    "LISTS": str(self.top / "lists"), "HAS_ALL": has_all})
         self.assertEqual(status, done.returncode, done.stderr)
@@ -94,6 +95,20 @@ class Setup(unittest.TestCase):
         self.assertIn("libsdformat-dev", said)
         self.assertIn("packages for test: all ", self.setup("--check", "test", has_all="0")[1])
 
+    def test_a_program_that_exists_replaces_its_package_and_a_package_that_is_nowhere_is_left_out(self):
+        scripts = self.top / "scripts"
+        scripts.mkdir()
+        for name in ("setup", "prologue.sh", "removed_variables.txt"):
+            shutil.copy(SCRIPTS / name, scripts)
+        (scripts / "packages.txt").write_text("[build]\nbash\n\n[run]\na-browser | /no/such/browser ?\na-shell | /bin/sh ?\nan-editor | /no/such/editor  # written\n", encoding="utf-8")
+        lines, said = self.setup("--packages", has_all="0", scripts=scripts)
+        self.assertIn("an-editor", lines)
+        self.assertEqual(set(), {"a-browser", "a-shell"} & set(lines))
+        self.assertIn("left out, because this system has no such package: a-browser\n", said)
+        lines, said = self.setup("--packages", scripts=scripts)
+        self.assertIn("a-browser", lines)
+        self.assertNotIn("no such package", said)
+
     def test_the_package_lists_are_fetched_before_a_package_counts_as_absent(self):
         lines, said = self.setup("--packages", "test")
         self.assertIn("libsdformat-dev", lines)
@@ -114,7 +129,7 @@ class Setup(unittest.TestCase):
 
     def test_the_check_lists_every_group_and_an_unknown_one_is_refused(self):
         _, said = self.setup("--check", status=1)
-        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "docs", "portability", "peers", "test"):
+        for group in ("build", "run", "fonts", "live", "report", "study", "cluster", "lab", "private-path", "docs", "clang", "portability", "peers", "test"):
             self.assertIn(f"packages for {group}: missing ", said)
         for name in ("servers", "", "build run", "$(touch sprung)"):
             self.assertIn("there is no group", self.setup(name, status=1)[1])
@@ -129,7 +144,7 @@ class Setup(unittest.TestCase):
                 groups.append(words[0].strip("[:]"))
             elif words:
                 self.assertTrue(groups, line)
-                self.assertTrue(len(words) == 1 or words[1:] == ["?"] or words[1] == "|" and len(words) == 3, line)
+                self.assertTrue(len(words) == 1 or words[1:] == ["?"] or words[1] == "|" and (len(words) == 3 or words[3:] == ["?"]), line)
                 self.assertNotIn((groups[-1], words[0]), named)
                 named.add((groups[-1], words[0]))
 

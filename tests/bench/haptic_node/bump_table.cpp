@@ -218,7 +218,7 @@ void draw(const std::string& path) {
   BumpStroke stroke{.speed_m_s = 0.1, .rate_Hz = 1000, .length_m = 0.05, .friction = 0.2, .lateral_m = 0.011};
   picture.title("One stroke of 50 mm over planks.png, 0.5 mm high, at 0.1 m/s, 2 mm deep at 1 N/mm, friction 0.2");
   for (const auto& [method, colour] :
-       {std::pair{"mesh", "#444"}, {"normal", "#b2182b"}, {"height", "#2166ac"}, {"both", "#762a83"}}) {
+       {std::pair{"mesh", "#444"}, {"normal", "#d55e00"}, {"height", "#0072b2"}, {"both", "#cc79a7"}}) {
     stroke.method = method;
     const BumpTrace t = run(stroke);
     if (stroke.method == "mesh") picture.curve("slope of the map", "#888", t.position_m, t.slope, -0.4, 0.4, "m/m");
@@ -227,7 +227,7 @@ void draw(const std::string& path) {
     picture.curve("", colour, t.position_m, t.up_N, 1.6, 2.8, "N up");
   }
   picture.axis("along the stroke, 0 to 50 mm");
-  picture.title("Spectra, by normals: force along the stroke (red) and the force by the slope (grey), dB");
+  picture.title("Spectra, by normals: force along the stroke (orange) and the force by the slope (grey), dB");
   for (const double speed_m_s : {0.05, 0.5}) {
     const BumpStroke long_one{.speed_m_s = speed_m_s, .rate_Hz = 1000};
     const BumpTrace t = run(long_one);
@@ -241,7 +241,7 @@ void draw(const std::string& path) {
       of_slope.push_back(10 * std::log10(std::max(1e-12, s.y[k] / most)));
     }
     const std::string at = speed_m_s < 0.1 ? "0.05 m/s" : "0.5 m/s";
-    picture.curve("force, " + at, "#b2182b", f, of_force, -60, 0, "dB");
+    picture.curve("force, " + at, "#d55e00", f, of_force, -60, 0, "dB");
     picture.curve("slope, " + at, "#888", f, of_slope, -60, 0, "dB");
     char text[80];
     std::snprintf(text, sizeof text, "%.0f to %.0f waves a metre", f.front(), f.back());

@@ -39,7 +39,22 @@ def nearest(codes):
     return min(found)
 
 
+def strong_colours(svg):
+    """The saturated colours of a picture: those of curves, bars and marks, but not of plates, grids and words."""
+    codes = {code.lower() for code in re.findall(r"#[0-9a-fA-F]{6}", svg)}
+    channels = {code: [int(code[i:i + 2], 16) for i in (1, 3, 5)] for code in codes}
+    return sorted(code for code, rgb in channels.items() if max(rgb) - min(rgb) >= 80)
+
+
 class Palettes(unittest.TestCase):
+    def test_every_two_colours_of_a_picture_of_the_documentation_differ_for_any_colour_vision(self):
+        pictures = sorted((ROOT / "docs").rglob("*.svg"))
+        self.assertGreater(len(pictures), 10)
+        for picture in pictures:
+            colours = strong_colours(picture.read_text(encoding="utf-8"))
+            with self.subTest(str(picture.relative_to(ROOT))):
+                self.assertGreater(nearest(colours)[0] if len(colours) > 1 else LEAST + 1, LEAST)
+
     def test_every_two_colours_of_a_figure_differ_for_any_colour_vision(self):
         for name in ("MODALITY", "PHASE", "SERIES", "BANDS", "LIMIT"):
             colours = getattr(palette, name)

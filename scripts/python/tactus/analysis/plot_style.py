@@ -19,7 +19,7 @@ def colour(modality):
 def stamp(fig, observer):
     """Marks a figure whose answers are partly or all simulated."""
     if "simulated" in observer:
-        fig.text(0.998, 1.0, f"observer = {observer}", ha="right", va="bottom", fontsize=7, color="#8a2be2")
+        fig.text(0.998, 1.0, f"observer = {observer}", ha="right", va="bottom", fontsize=7, color=INK)
 
 
 def thresholds_behind(axes, found, legend=True):
