@@ -225,7 +225,7 @@ class OtherTables(unittest.TestCase):
                     of_run.metrics(folder, folder)
 
     def test_an_unknown_tool_is_refused(self):
-        with self.assertRaisesRegex(Refusal, "--tool 7: .*haptic.csv has no such tool; it has 0"):
+        with self.assertRaisesRegex(Refusal, "--tool 7: haptic.csv has no such tool; it has 0"):
             of_run.metrics(self.good, tool="7")
 
     def test_a_comparison_that_is_left_out_is_explained(self):

@@ -46,7 +46,7 @@ def tool_rows(folder, tool=None):
             for name in energies:
                 columns[name].append(files.number(row, name, where) if row.get(name) else 0.0)
     if tool is not None and tools and tool not in tools:
-        raise Refusal(f"--tool {tool}: {path} has no such tool; it has {', '.join(sorted(tools))}")
+        raise Refusal(f"--tool {tool}: haptic.csv has no such tool; it has {', '.join(sorted(tools))}")
     return {name: np.array(values) for name, values in columns.items()} if columns["time_s"] else {}
 
 
