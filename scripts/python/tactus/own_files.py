@@ -76,6 +76,24 @@ def results_folder(path):
         raise
 
 
+def require_writable(option, path, inputs=()):
+    """Refuses an output file before long work: in a folder that is missing or closed, a folder itself, or one of the inputs. option: its option, for messages; path None: there
+    is none. Raises Refusal."""
+    if path is None:
+        return
+    if not path or os.path.isdir(path) or path.endswith("/"):
+        raise Refusal(f"{option} {path}: is not the name of a file; name a file in a writable folder")
+    folder = os.path.dirname(os.path.abspath(path))
+    reason = "" if os.path.isdir(folder) else f"{folder} is not a folder"
+    if not reason and not os.access(path if os.path.exists(path) else folder, os.W_OK):
+        reason = "this user may not write it"
+    if reason:
+        raise Refusal(f"{option} {path}: cannot be written, because {reason}; name a file in a writable folder")
+    for given in inputs:
+        if os.path.exists(path) and os.path.exists(given) and os.path.samefile(path, given):
+            raise Refusal(f"{option} {path}: is the input itself, which it would replace; name another file")
+
+
 def open_own(path):
     """Descriptor for reading a regular file of the own user; a link or a named pipe is refused and not waited for. Raises OSError."""
     descriptor = os.open(path, os.O_RDONLY | OPEN_FLAGS)

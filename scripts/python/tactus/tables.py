@@ -6,6 +6,7 @@ with file and line.
 """
 import csv
 import io
+import math
 import re
 
 from tactus.refusal import Refusal
@@ -13,6 +14,8 @@ from tactus.refusal import Refusal
 # Spreadsheets run a cell that begins so as a formula (OWASP, CSV injection), except a number. The apostrophes make the escape reversible.
 FORMULA = re.compile(r"'*[=+\-@\t\r](?s:.)")
 NUMBER = re.compile(r"[+-][0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?")
+WHOLE = re.compile(r"-?[0-9]{1,19}")  # of 64 bits
+LARGEST = 1e15  # of numbers in tables of runs: squares and their sums stay finite; design
 UTF16 = (b"\xff\xfe", b"\xfe\xff")  # byte order marks; spreadsheets write them as "Unicode text"
 SEPARATORS = {";": "semicolons", "\t": "tabs"}  # of spreadsheets in other languages, beside the comma
 
@@ -55,6 +58,36 @@ def read_rows(path, may_end_early=False):
         lines = records(decoded(file.read(), path), path, may_end_early)
     _, header = next(lines, (1, []))
     return [dict(zip(header, fields)) for _, fields in lines]
+
+
+def numbered_rows(path, needs=()):
+    """Yields ("FILE:LINE", dictionary) of each row; values are texts. needs: names of columns that the table must have. Raises OSError, and Refusal with file
+    and line."""
+    with open(path, "rb") as file:
+        lines = records(decoded(file.read(), path), path)
+    line, header = next(lines, (1, []))
+    if missing := [name for name in needs if name not in header]:
+        raise Refusal(f"{path}:{line}: has no column {missing[0]}; it needs {', '.join(needs)}")
+    for line, fields in lines:
+        yield f"{path}:{line}", dict(zip(header, fields))
+
+
+def number(row, name, where):
+    """The number of a cell, at most LARGEST in size. where: its "FILE:LINE". Raises Refusal."""
+    try:
+        value = float(row[name])
+    except ValueError:
+        raise Refusal(f"{where}: {name} is {row[name]!r} and not a number; correct it, or export the table again") from None
+    if not (math.isfinite(value) and abs(value) <= LARGEST):
+        raise Refusal(f"{where}: {name} is {row[name]}, which no run writes; correct it, or export the table again")
+    return value
+
+
+def whole(row, name, where):
+    """The whole number of a cell. where: its "FILE:LINE". Raises Refusal."""
+    if not WHOLE.fullmatch(row[name]):
+        raise Refusal(f"{where}: {name} is {row[name]!r} and not a whole number; correct it, or export the table again")
+    return int(row[name])
 
 
 def escaped(text):

@@ -20,6 +20,11 @@ def one_line(text):
     return printable(text).replace("\n", "\\n")
 
 
+def readable(text):
+    """As one_line(), also for bytes that are not UTF-8: a name of the user in a table, picture or page."""
+    return one_line(text).encode("utf-8", "backslashreplace").decode("utf-8")
+
+
 def report(text, stream=None):
     """Prints complete lines and flushes."""
     stream = stream or sys.stdout

@@ -57,6 +57,20 @@ class EveryCommand(unittest.TestCase):
                     with self.subTest((name, option)):
                         self.assertIn(option, text)
 
+    def test_a_file_of_json_that_cannot_be_written_is_refused_by_every_command_before_its_work(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = pathlib.Path(folder, "run.lcmlog")
+            log.write_bytes(b"a log")
+            for name, command in BY_NAME.items():
+                if "json" not in command.options:
+                    continue
+                for words in (("--json", "/proc/none/a.json"), (f"--json={folder}",), (str(log), "--json", str(log))):
+                    with self.subTest((name, words)):
+                        done = tactus(name, *command.verbs[:1], *words)
+                        self.assertEqual((1, ""), (done.returncode, done.stdout))
+                        self.assertRegex(done.stderr, rf"^{name}: --json .*: .*; name .*\n$")
+            self.assertEqual(b"a log", log.read_bytes())
+
     def test_the_common_options_of_the_table_are_those_of_the_help(self):
         for name, command in BY_NAME.items():
             text = self.helps[name].stdout.partition("\nOptions of every command\n")[0]

@@ -29,6 +29,18 @@ class OwnFiles(unittest.TestCase):
         with self.assertRaisesRegex(OSError, "longer than 4 bytes"):
             own_files.read_own(path, 4)
 
+    def test_an_output_that_cannot_be_written_or_is_an_input_is_refused_before_the_work(self):
+        given = self.folder / "run.lcmlog"
+        given.write_bytes(b"log")
+        (self.folder / "link").symlink_to(given)
+        refused = lambda path: self.assertRaisesRegex(Refusal, "^--json .*; name (a file in a writable folder|another file)$", own_files.require_writable, "--json", str(path), [str(given)])
+        for path in (self.folder, self.folder / "none" / "a.json", given / "a.json", given, self.folder / "link", f"{self.folder}/"):
+            refused(path)
+        refused("")
+        for path in (None, str(self.folder / "a.json"), "/dev/stdout"):
+            own_files.require_writable("--json", path, [str(given)])
+        self.assertFalse((self.folder / "a.json").exists())
+
     def test_a_link_a_pipe_and_a_file_of_another_user_are_refused_without_waiting(self):
         (self.folder / "file").write_text("", encoding="utf-8")
         (self.folder / "link").symlink_to(self.folder / "file")

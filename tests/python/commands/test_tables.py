@@ -39,6 +39,26 @@ class Tables(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "table.csv:1: its fields are separated by semicolons"):
             walls.room(self.path.parent, self.path.name)
 
+    def test_a_cell_that_is_no_finite_number_is_refused_with_file_and_line(self):
+        for text in ("nan", "inf", "-inf", "1e300", "hello", "", "1,5", "0x10"):
+            self.path.write_text(f'name,value\na,1\n\nb,"{text}"\n', encoding="utf-8")
+            rows = list(tables.numbered_rows(self.path, ("value",)))
+            self.assertEqual(1.0, tables.number(rows[0][1], "value", rows[0][0]))
+            with self.subTest(text), self.assertRaisesRegex(Refusal, f"^{self.path}:4: value is "):
+                tables.number(rows[1][1], "value", rows[1][0])
+
+    def test_a_cell_that_is_no_whole_number_is_refused_with_file_and_line(self):
+        for text in ("1.5", "1e3", "", "nan", "0x1", "1_000", "٣", "9" * 20):
+            with self.subTest(text), self.assertRaisesRegex(Refusal, "^t.csv:7: value is .* and not a whole number"):
+                tables.whole({"value": text}, "value", "t.csv:7")
+        self.assertEqual(-12, tables.whole({"value": "-12"}, "value", "t.csv:7"))
+
+    def test_a_table_without_a_needed_column_is_refused_by_its_name(self):
+        for text in ("", "\n\n", "a,b\n1,2\n"):
+            self.path.write_text(text, encoding="utf-8")
+            with self.assertRaisesRegex(Refusal, f"^{self.path}:1: has no column value; it needs value, a"):
+                list(tables.numbered_rows(self.path, ("value", "a")))
+
     def test_an_empty_table_has_no_rows(self):
         self.path.write_bytes(b"\n\n")
         self.assertEqual(tables.read_rows(self.path), [])

@@ -56,7 +56,7 @@ class TaskFiles(unittest.TestCase):
                                        ('sense="audio"', 'sense=""', 1, "needs a sense"), ('seconds="1s"', 'seconds="1"', 1, 'seconds="1" is not a time'),
                                        ('seconds="1s"', 'seconds="601s"', 1, "0.1 s to 600 s"), ('scene="scene.sdf"', 'scene="none.sdf"', 1, "there is no scene none.sdf"),
                                        ('name="steel"', 'name="oak"', 4, "the value oak occurs twice"), (" to=\"steel\"", "", 4, "<set> needs the attribute to"),
-                                       ("window", "look", 7, "<look> is not an element of <task>"), ("400ms", "1400ms", 7, "does not lie in the 1 s of the task"),
+                                       ("400ms", "5ms", 7, "shorter than 10 ms, which no sense perceives"), ("window", "look", 7, "<look> is not an element of <task>"), ("400ms", "1400ms", 7, "does not lie in the 1 s of the task"),
                                        ('<value name="steel">', '<value name="steel" size="3">', 4, "<value> has no attribute size"), ("</task>", "", 9, ""),
                                        ("<task", "<!DOCTYPE task><task", 1, "DOCTYPE")):
             with self.subTest(new), self.assertRaises(Refusal) as caught:
@@ -72,6 +72,27 @@ class TaskFiles(unittest.TestCase):
                 task_file.changed_scene(task.scene, task.variants[0])
             self.assertIn(reason, str(caught.exception))
             self.assertIn("t.task.xml:5: ", str(caught.exception))
+
+    def test_a_change_sets_attributes_by_their_names_only(self):
+        at = lambda text: self.read(TASK.replace("model[@name='b']/pose\" to=\"2", f"{text}\" to=\"2"))
+        task = at("model[@name='b']/@tactus:group")
+        self.assertIn(b'tactus:group="2 0 0', task_file.changed_scene(task.scene, task.variants[0]))
+        for name in ("a b", "1a", "other:x", "=x"):
+            task = at(f"model[@name='b']/@{name}")
+            with self.subTest(name), self.assertRaisesRegex(Refusal, "t.task.xml:5: .* is not the name of an attribute"):
+                task_file.changed_scene(task.scene, task.variants[0])
+
+    def test_a_task_for_vision_is_long_enough_for_a_look(self):
+        text = TASK.replace('sense="audio"', 'sense="visual"')
+        self.assertEqual(((0.0, 0.25),), self.read(text.replace("400ms", "250ms")).windows)
+        with self.assertRaisesRegex(Refusal, "t.task.xml:1: all windows together are shorter than 250 ms, so no look"):
+            self.read(text.replace("400ms", "249ms"))
+
+    def test_a_scene_without_a_tool_is_refused_because_nothing_is_felt(self):
+        path = self.folder / "haptic.csv"
+        path.write_text("time_s,tool,host_s\n,0,1\n1,1,1\n", encoding="utf-8")
+        with self.assertRaisesRegex(Refusal, "no row of the first tool"):
+            touch.columns(path, "host_s")
 
     def test_warnings_of_the_scene_are_found_in_the_output_of_a_run(self):
         self.assertTrue(rendering.WARNING.match('sim_node: /tmp/x/scene.sdf:6: /sdf/world[@name="w"]/wind is not supported and has no effect'))

@@ -1,6 +1,8 @@
 """Tests of the metrics: values that were computed with another program, bounds for random signals, and runs whose metrics are known."""
 import csv
+import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -11,6 +13,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
 from tactus.metrics import age, codec, compare, of_run, ranking
+from tactus import tables
+from tactus.refusal import Refusal
 
 T = np.arange(1000) * 1e-3
 SWELL = 1 + 0.5 * np.sin(2 * np.pi * T)
@@ -180,6 +184,69 @@ class Runs(unittest.TestCase):
     def test_every_metric_has_unit_and_meaning(self):
         for unit, meaning, _ in of_run.MEANING.values():
             self.assertTrue(unit and meaning)
+
+
+class OtherTables(unittest.TestCase):
+    """Tables of other programs, damaged ones, and runs that cannot be compared."""
+    HEAD = "tool,time_s,force_x_N,force_y_N,force_z_N"
+    ROWS = [f"0,{i * 1e-3:.3f},0,0,{1 + 0.5 * np.sin(i / 50):.6f}" for i in range(500)]
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.good = self.written("good")
+
+    def written(self, name, rows=None, head=None, encoding="utf-8", end="\n", presented=None):
+        folder = self.folder / name
+        folder.mkdir()
+        (folder / "haptic.csv").write_bytes(end.join([self.HEAD if head is None else head, *(self.ROWS if rows is None else rows), ""]).encode(encoding))
+        if presented is not None:
+            (folder / "presented.csv").write_text(presented, encoding="utf-8")
+        return str(folder)
+
+    def test_marks_and_line_ends_do_not_change_the_metrics(self):
+        for name, how in (("mark", {"encoding": "utf-8-sig"}), ("crlf", {"end": "\r\n"})):
+            found = of_run.metrics(self.written(name, **how), self.good)
+            self.assertEqual(0, found["force_rmse_N"])
+            self.assertAlmostEqual(1, found["force_hssim_like"])
+
+    def test_a_table_that_cannot_be_used_is_refused_with_file_and_line(self):
+        damaged = lambda row: [*self.ROWS[:100], row, *self.ROWS[101:]]
+        head = "event_id,modality,part,outcome,presented_ns\n"
+        for name, how, said in (("utf16", {"encoding": "utf-16"}, "haptic.csv:1: is UTF-16"), ("empty", {"rows": [], "head": ""}, "haptic.csv:1: has no column tool"),
+                                ("other", {"head": "tool,t,x,y,z"}, "haptic.csv:1: has no column time_s"), ("nan", {"rows": damaged("0,0.1,nan,0,0")}, "haptic.csv:102: force_x_N is nan"),
+                                ("inf", {"rows": damaged("0,0.1,0,inf,0")}, "haptic.csv:102: force_y_N is inf"), ("huge", {"rows": damaged("0,0.1,0,0,1e300")}, "haptic.csv:102: force_z_N is 1e300"),
+                                ("word", {"rows": damaged("0,soon,0,0,0")}, "haptic.csv:102: time_s is 'soon'"), ("cut", {"rows": damaged("0,0.1")}, "haptic.csv:102: has 2 fields"),
+                                ("semicolons", {"rows": [row.replace(",", ";") for row in self.ROWS], "head": self.HEAD.replace(",", ";")}, "haptic.csv:1: .*semicolons"),
+                                ("late", {"presented": head + "1,audio,onset,presented,soon\n"}, "presented.csv:2: presented_ns is 'soon'"),
+                                ("no_ns", {"presented": "a,b\n1,2\n"}, "presented.csv:1: has no column event_id"), ("long", {"rows": ["0,0,0,0,1", "0,1e9,0,0,1"]}, None)):
+            with self.subTest(name):
+                folder = self.written(name, **how)
+                with self.assertRaisesRegex(Refusal, f"^{folder}/{said}" if said else "span 1e\\+09 s"):
+                    of_run.metrics(folder, folder)
+
+    def test_an_unknown_tool_is_refused(self):
+        with self.assertRaisesRegex(Refusal, "--tool 7: haptic.csv has no such tool; it has 0"):
+            of_run.metrics(self.good, tool="7")
+
+    def test_a_comparison_that_is_left_out_is_explained(self):
+        still = [f"0,{i * 1e-3:.3f},0,0,0" for i in range(500)]
+        for name, rows, why in (("none", [], "the run has no force of this tool"), ("later", [f"0,{1000 + i * 1e-3:.3f},0,0,1" for i in range(500)], "do not overlap")):
+            reasons = []
+            found = of_run.metrics(self.written(name, rows), self.good, explain=reasons.append)
+            self.assertNotIn("force_rmse_N", found)
+            self.assertRegex(reasons[0], why)
+        reasons = []
+        of_run.metrics(self.written("still", still), self.written("still_too", still), explain=reasons.append)
+        self.assertEqual(["forces are not compared: neither has a contact"], reasons)
+
+    def test_any_name_of_a_run_is_printed_and_written(self):
+        folder = self.written(os.fsdecode(b"a\nb\xff"))
+        done = subprocess.run([str(ROOT / "scripts" / "tactus"), "metrics", folder, "--csv", str(self.folder / "a.csv"), "--json", str(self.folder / "a.json")], capture_output=True, check=False)
+        self.assertEqual((0, b""), (done.returncode, done.stderr))
+        self.assertEqual(2, len(tables.read_rows(self.folder / "a.csv")) + 1)
+        for words in (("/dev/null",), (self.good, "--csv", self.good), (self.good, "--csv", "/proc/none/a")):
+            done = subprocess.run([str(ROOT / "scripts" / "tactus"), "metrics", *words], capture_output=True, text=True, check=False)
+            self.assertEqual((1, "", 1), (done.returncode, done.stdout, done.stderr.count("\n")))
 
 
 class Ranking(unittest.TestCase):

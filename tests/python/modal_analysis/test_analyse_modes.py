@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from xml.etree import ElementTree as etree
 
 import numpy as np
 
@@ -150,7 +151,7 @@ class Damping(unittest.TestCase):
 
 def wav(samples, bits=16, kind=1, channels=1, rate=RATE):
     if kind == 3:
-        body = samples.astype("<f4").tobytes()
+        body = samples.astype(f"<f{bits // 8}").tobytes()
     elif bits == 24:
         whole = np.round(samples * (2 ** 23 - 1)).astype("<i4")
         body = b"".join(int(v & 0xFFFFFF).to_bytes(3, "little") for v in whole.ravel())
@@ -196,6 +197,28 @@ class TheProgram(unittest.TestCase):
             with self.subTest(name):
                 self.assertIn(name, self.refused(self.path(name, content)))
         self.assertIn("nowhere.wav", self.refused(self.path("nowhere.wav")))
+
+    def test_refuses_samples_whose_squares_are_no_numbers(self):
+        for name, size in (("loud.wav", 1e200), ("faint.wav", 1e-200)):
+            with self.subTest(name):
+                self.assertIn(name, self.refused(self.path(name, wav(size * ringing(RATE), 64, 3))))
+
+    def test_any_name_of_a_recording_is_shown_in_its_picture(self):
+        for name in (b"gl\xffass", b"a\nb\x01", "<鐘> & $\\frac{".encode()):
+            picture = self.path("picture.svg")
+            with self.subTest(name):
+                done = self.run_it(self.path(os.fsdecode(name + b".wav"), wav(ringing(RATE // 2) / 4)), "--picture", picture)
+                self.assertEqual((0, ""), (done.returncode, done.stderr))
+                etree.parse(picture)
+        self.assertIn("must be UTF-8", self.refused(self.path("good.wav", wav(ringing(RATE // 2) / 4)), "--material", "bell", "--base", "copper",
+                                                    "--out", self.path(os.fsdecode(b"\xff.xml"))))
+
+    def test_an_output_never_replaces_the_recording(self):
+        sound = self.path("bell.wav", wav(ringing(RATE // 2) / 4))
+        size = os.path.getsize(sound)
+        self.assertIn("is the input itself", self.refused(sound, "--picture", sound))
+        self.assertIn("is the input itself", self.refused(sound, "--json", sound))
+        self.assertEqual(size, os.path.getsize(sound))
 
     def test_refuses_contradictory_options(self):
         good = self.path("good.wav", wav(ringing(RATE // 2) / 4))

@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = pathlib.Path(os.environ.setdefault("TACTUS_BIN", str(ROOT / "build" / "dev" / "bin")))
 sys.path[:0] = [str(ROOT / "scripts" / "python"), str(ROOT / "tests" / "measure" / "hands")]
 import known_hands
-from tactus.rerun import comparison, play
+from tactus.rerun import comparison, play, recording
 
 
 def make_log(folder, hand, scene_text, path, seconds, profile=None):
@@ -39,6 +39,20 @@ class Rerun(unittest.TestCase):
         self.assertEqual(1, len(done.stderr.strip().split("\n")), done.stderr)
         for part in parts:
             self.assertIn(part, done.stderr)
+
+    def test_a_profile_that_cannot_be_used_is_refused_before_anything_runs(self):
+        (self.folder / "run.lcmlog").write_bytes(b"")
+        for name, text, reason in (("late.xml", '<profile name="x"><degrade modality="haptic" delay="20 bananas"/></profile>', 'late.xml:1: delay="20 bananas"'), ("cut.xml", "<profile", "cut.xml:1: ")):
+            (self.folder / name).write_text(text, encoding="utf-8")
+            self.one_sentence(self.rerun("run.lcmlog", "--degrade", name, "--out", "again"), reason)
+            self.assertFalse((self.folder / "again").exists())
+
+    def test_the_reason_of_a_failed_run_is_that_of_the_node_that_ended(self):
+        said = "haptic_node: a.xml:1: wrong\nrecorder: run.lcmlog: 38 events\nvirtual_time: 1.1 s in 0.006 s\nvirtual_time: haptic_node ended; see its message above\n"
+        self.assertEqual("haptic_node: a.xml:1: wrong", recording.reason_of(said))
+        self.assertEqual("replay: no log", recording.reason_of("a warning\nreplay: no log\n"))
+        self.assertEqual("", recording.reason_of(""))
+        self.assertEqual("virtual_time: x ended; see its message above", recording.reason_of("virtual_time: x ended; see its message above"))
 
     def test_the_profile_of_the_log_reproduces_it_and_another_one_gives_the_truth(self):
         hand = known_hands.hand("stylus")

@@ -6,7 +6,8 @@ import os
 import signal
 import sys
 
-from tactus import signals
+from tactus import own_files, signals
+from tactus.refusal import Refusal
 
 QUIET = "--quiet"
 JSON = "--json"
@@ -53,6 +54,21 @@ def carried_out(command, words):
         os.close(null)
         words = [word for word in words if word != QUIET]
     return words
+
+
+def refuse_unwritable_json(command, words):
+    """Ends with one sentence when the file of --json cannot be written, or is an input: before the work, which may take hours."""
+    if command.passes_words or "json" not in command.options:
+        return
+    for at, word in enumerate(words):
+        given = word.removeprefix(f"{JSON}=") if word.startswith(f"{JSON}=") else words[at + 1] if word == JSON and at + 1 < len(words) else "-"
+        if given.startswith("-"):
+            continue
+        others = [other for i, other in enumerate(words) if i not in (at, at + 1) and os.path.isfile(other)]
+        try:
+            own_files.require_writable(JSON, given, others)
+        except Refusal as refusal:
+            sys.exit(f"{command.name}: {refusal}")
 
 
 def position_of_json(words):

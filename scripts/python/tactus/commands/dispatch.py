@@ -65,6 +65,7 @@ def print_help(command, words):
 
 
 def run(command, words):
+    common_options.refuse_unwritable_json(command, words)
     words = common_options.carried_out(command, words)
     if "." not in command.target:
         script = str(SCRIPTS / command.target)

@@ -94,7 +94,6 @@ def run(a):
     figures = []
     with tempfile.TemporaryDirectory() as scratch:
         for task in tasks:
-            progress = terminal.report_error if False else lambda share: None
             terminal.report_error(terminal.one_line(f"study information: {task.name}, {len(task.values) * len(task.variants)} renderings"))
             figures.append(measure(task, a, pathlib.Path(a.keep).absolute() if a.keep else pathlib.Path(scratch)))
             if a.json != "-":

@@ -10,6 +10,8 @@ from tactus.refusal import Refusal
 SHIPPED = SCENES / "tasks"
 SUFFIX = ".task.xml"
 MAX_RENDERINGS = 10_000
+SHORTEST_WINDOW_S = 0.01  # ten ticks of touch; design
+LOOK_S = 0.25             # between two looks: pictures.LOOKS_HZ
 SENSES = ("visual", "audio", "haptic", "thermal")
 NAMESPACES = {"tactus": "https://tactus.dev/sdf"}
 SECONDS = {"ms": 1e-3, "s": 1.0}
@@ -95,7 +97,12 @@ class Reading:
             if not begin < end <= seconds:
                 self.refuse(element, f"the window from {begin:g} s to {end:g} s does not lie in the {seconds:g} s of the task; correct from and to")
             found.append((begin, end))
-        return tuple(found) or ((0.0, seconds),)
+            if end - begin < SHORTEST_WINDOW_S:
+                self.refuse(element, f"the window from {begin:g} s to {end:g} s is shorter than {1e3 * SHORTEST_WINDOW_S:g} ms, which no sense perceives; extend it")
+        found = tuple(found) or ((0.0, seconds),)
+        if "visual" in self.root.get("sense").split() and max(w[1] for w in found) - min(w[0] for w in found) < LOOK_S:
+            self.refuse(self.root, f"all windows together are shorter than {1e3 * LOOK_S:g} ms, so no look falls into them; extend one")
+        return found
 
     def task(self):
         self.check(self.root, "task")
@@ -128,6 +135,12 @@ class Reading:
         self.refuse(self.root, f"there is no scene {name} beside the task file; correct scene")
 
 
+def qualified(attribute):
+    """The name of an attribute as lxml writes it: with the prefix tactus in its namespace."""
+    prefix, colon, name = attribute.partition(":")
+    return f"{{{NAMESPACES[prefix]}}}{name}" if colon and prefix in NAMESPACES else attribute
+
+
 def changed_scene(scene, changes):
     """XML of the scene with these changes, in order. Raises Refusal."""
     from lxml import etree
@@ -148,7 +161,10 @@ def changed_scene(scene, changes):
             raise Refusal(f"{change.where}: at=\"{change.at}\" names {len(found) if isinstance(found, list) else 'no'} elements of the world of {scene.name}; "
                           "it must name one")
         if attribute:
-            found[0].set(attribute, change.to)
+            try:
+                found[0].set(qualified(attribute), change.to)
+            except ValueError:
+                raise Refusal(f"{change.where}: at=\"{change.at}\": {attribute} is not the name of an attribute; write for example tactus:tool/@radius") from None
         else:
             found[0].text = change.to
     return etree.tostring(tree, xml_declaration=True, encoding="UTF-8")

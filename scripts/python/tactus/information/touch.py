@@ -4,6 +4,7 @@ import math
 import numpy as np
 
 from tactus.information import noise
+from tactus.refusal import Refusal
 from tactus.tables import read_rows
 
 CONTACT_S = 1.0  # of a touch whose heat flow is judged: the initial rate is the main cue (Bergmann Tiest and Kappers 2009)
@@ -13,6 +14,8 @@ MIN_TRAVEL_M = 1e-3  # of the hand, for a stiffness; design
 def columns(path, *names):
     """Columns of the first tool in a table of touch or warmth, with rows of the world only."""
     rows = [row for row in read_rows(path) if row["time_s"] and row["tool"] == "0"]
+    if not rows:
+        raise Refusal(f"{path} has no row of the first tool, so nothing is felt; give a scene with a <tactus:tool>")
     return [np.array([float(row[name]) for row in rows]) for name in names]
 
 

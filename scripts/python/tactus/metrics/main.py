@@ -23,10 +23,11 @@ import os
 import sys
 import tempfile
 
+from tactus import own_files, terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import packages_remedy
-from tactus.refusal import Refusal
+from tactus.refusal import Refusal, sentence_of
 
 
 def arguments(words):
@@ -44,6 +45,9 @@ def arguments(words):
             raise Refusal(f"{path} does not exist; give the folder of a run, its run.lcmlog, or a folder of tactus rerender")
         if os.path.isdir(path) and not is_log(path) and not os.path.exists(os.path.join(path, "haptic.csv")):
             raise Refusal(f"{path} has neither a log nor a haptic.csv; give the folder of a run or of tactus rerender")
+        if not os.path.isdir(path) and not is_log(path):
+            raise Refusal(f"{path} is neither a file nor a folder; give the folder of a run, its run.lcmlog, or a folder of tactus rerender")
+    own_files.require_writable("--csv", options.csv, [*options.run, *([options.reference] if options.reference else [])])
     if description.run_number(options.number) is None:
         raise Refusal(f"--run {options.number}: is not the number of a run; see replay LOG --describe")
     return options
@@ -69,15 +73,18 @@ def beside(path):
     return folder if os.path.isdir(path) and not is_log(path) and os.path.exists(os.path.join(folder, "haptic.csv")) else None
 
 
-def show(found):
+def show(found, left_out):
+    """left_out: {path: [reason]} of comparisons that were not made."""
     from tactus.metrics import of_run
     for path, metrics in found.items():
-        print(path)
+        print(terminal.one_line(path))
         for name, value in metrics.items():
             unit, meaning, _ = of_run.MEANING[name]
             print(f"  {name:22} {value:12.6g} {'' if unit == '1' else unit:4} {meaning}")
         if not metrics:
             print("  no data for any metric")
+        for reason in left_out.get(path, []):
+            print(terminal.one_line(f"  {reason}"))
 
 
 def write(options, found):
@@ -86,7 +93,7 @@ def write(options, found):
         with open(options.json, "w", encoding="utf-8") as file:
             json.dump({"runs": found, "units": {name: of_run.MEANING[name][0] for name in of_run.MEANING}}, file, indent=1)
     if options.csv:
-        with open(options.csv, "w", encoding="utf-8", newline="") as file:
+        with open(options.csv, "w", encoding="utf-8", newline="", errors="backslashreplace") as file:
             table = csv.DictWriter(file, ["run", *of_run.MEANING], lineterminator="\n")
             table.writeheader()
             table.writerows({"run": path, **metrics} for path, metrics in found.items())
@@ -97,18 +104,19 @@ def main(words):
         options = arguments(words)
         from tactus.metrics import of_run
         from tactus.rerender import read as rendered
-        found = {}
+        found, left_out = {}, {}
         with tempfile.TemporaryDirectory() as scratch:
             shared = read(options.reference, scratch, options.number)[0] if options.reference else None
             for path in options.run:
                 folder, tables = read(path, scratch, options.number)
-                found[path] = of_run.metrics(folder, shared or beside(path), tables, options.tool, rendered.pictures if options.pictures else None)
-        show(found)
+                found[path] = of_run.metrics(folder, shared or beside(path), tables, options.tool, rendered.pictures if options.pictures else None,
+                                             left_out.setdefault(path, []).append)
+        show(found, left_out)
         write(options, found)
     except Refusal as refusal:
         sys.exit(f"metrics: {refusal}")
     except ImportError as error:
         sys.exit(f"metrics: {error.name} is missing; {packages_remedy('report')}")
     except OSError as error:
-        sys.exit(f"metrics: cannot write {error.filename} ({error.strerror}); give --json and --csv files in writable folders")
+        sys.exit(f"metrics: {sentence_of(error)}")
     return 0

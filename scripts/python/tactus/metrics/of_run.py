@@ -1,14 +1,16 @@
 """The metrics of one run, or of one rendering of a log, from its tables. A metric whose data the tables lack is left out."""
-import csv
 import os
 
 import numpy as np
 
+from tactus import tables as files
 from tactus.log import log_tables
 from tactus.metrics import age, compare
+from tactus.refusal import Refusal
 
 FORCE_RATE_HZ = 200.0  # of the forces that are compared: 5 ms are finer than any published limit of a delayed force (design)
 MAX_LAG_S = 0.4        # the largest delay of force that is looked for (design)
+LONGEST_S = 14400.0    # of forces that are compared: 230 MiB of paths of etvo_like (design)
 MIN_FORCE_N = 1e-3     # smaller forces are no contact
 # {metric: (unit, meaning, True if more is worse)}; the order of tables.
 MEANING = {
@@ -28,31 +30,36 @@ MEANING = {
 
 
 def tool_rows(folder, tool=None):
-    """{column: array} of one tool of haptic.csv; tool None: the first with a simulated time. {} without such a table."""
+    """{column: array} of one tool of haptic.csv; tool None: the first with a simulated time. {} without such a table, or without rows. Raises Refusal with file
+    and line, and for a tool that the table does not have."""
     path = os.path.join(folder, "haptic.csv")
     if not os.path.exists(path):
         return {}
-    wanted = ("time_s", "force_x_N", "force_y_N", "force_z_N", "injected_J", "generated_J")
-    columns = {name: [] for name in wanted}
-    with open(path, encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            tool = row["tool"] if tool is None and row["time_s"] else tool
-            if row["tool"] == tool and row["time_s"]:
-                for name in wanted:
-                    columns[name].append(float(row.get(name) or 0))
+    needed, energies = ("time_s", "force_x_N", "force_y_N", "force_z_N"), ("injected_J", "generated_J")
+    columns, wanted, tools = {name: [] for name in (*needed, *energies)}, tool, set()
+    for where, row in files.numbered_rows(path, ("tool", *needed)):
+        tools.add(row["tool"])
+        wanted = row["tool"] if wanted is None and row["time_s"] else wanted
+        if row["tool"] == wanted and row["time_s"]:
+            for name in needed:
+                columns[name].append(files.number(row, name, where))
+            for name in energies:
+                columns[name].append(files.number(row, name, where) if row.get(name) else 0.0)
+    if tool is not None and tools and tool not in tools:
+        raise Refusal(f"--tool {tool}: haptic.csv has no such tool; it has {', '.join(sorted(tools))}")
     return {name: np.array(values) for name, values in columns.items()} if columns["time_s"] else {}
 
 
 def presented_ns(folder):
-    """{modality: {event: ns}}, of presented.csv of a run or presented_MODALITY.csv of a rendering; only the hits of touch."""
+    """{modality: {event: ns}}, of presented.csv of a run or presented_MODALITY.csv of a rendering; only the hits of touch. Raises Refusal with file and line."""
     found = {}
     for name in sorted(os.listdir(folder)):
         if not name.startswith("presented") or not name.endswith(".csv"):
             continue
-        with open(os.path.join(folder, name), encoding="utf-8", newline="") as file:
-            for row in csv.DictReader(file):
-                if int(row["presented_ns"]) >= 0 and row["outcome"] in log_tables.PRESENTED and (row["modality"], row["part"]) != ("haptic", "constraint"):
-                    found.setdefault(row["modality"], {}).setdefault(row["event_id"], int(row["presented_ns"]))
+        for where, row in files.numbered_rows(os.path.join(folder, name), ("event_id", "modality", "part", "outcome", "presented_ns")):
+            at_ns = files.whole(row, "presented_ns", where)
+            if at_ns >= 0 and row["outcome"] in log_tables.PRESENTED and (row["modality"], row["part"]) != ("haptic", "constraint"):
+                found.setdefault(row["modality"], {}).setdefault(row["event_id"], at_ns)
     return found
 
 
@@ -85,10 +92,27 @@ def resampled(times_s, values, at_s):
     return values[order][np.clip(np.searchsorted(times_s[order], at_s, side="right") - 1, 0, len(order) - 1)]
 
 
+def common_time_s(reference, other):
+    """(begin, end) of the time that both have."""
+    return max(reference["time_s"].min(), other["time_s"].min()), min(reference["time_s"].max(), other["time_s"].max())
+
+
+def why_no_force(reference, other):
+    """The reason why the forces of two tables are not compared; "": they are. Arrays of tool_rows()."""
+    if not other or not reference:
+        return f"the {'run' if not other else 'reference'} has no force of this tool"
+    begin, end = common_time_s(reference, other)
+    if end - begin < 2 / FORCE_RATE_HZ:
+        return "their simulated times do not overlap"
+    return "" if of_force(reference, other) else "neither has a contact"
+
+
 def of_force(reference, other):
-    """Metrics of the force of one tool against a reference, over their common time. Arrays of tool_rows()."""
+    """Metrics of the force of one tool against a reference, over their common time. Arrays of tool_rows(). Raises Refusal when that time is too long."""
     force = lambda rows: np.stack([rows[f"force_{axis}_N"] for axis in "xyz"], axis=1)
-    begin, end = max(reference["time_s"].min(), other["time_s"].min()), min(reference["time_s"].max(), other["time_s"].max())
+    begin, end = common_time_s(reference, other)
+    if end - begin > LONGEST_S:
+        raise Refusal(f"the forces span {end - begin:.6g} s, and at most {LONGEST_S:g} s are compared; give shorter runs")
     at_s = np.arange(begin, end, 1 / FORCE_RATE_HZ)
     if len(at_s) < 2:
         return {}
@@ -133,9 +157,9 @@ def sent_per_s(tables):
     return sent / (max(times) - min(times)) if suppressed and max(times) > min(times) else None
 
 
-def metrics(folder, reference=None, tables=None, tool=None, pictures=None):
+def metrics(folder, reference=None, tables=None, tool=None, pictures=None, explain=lambda sentence: None):
     """{metric: value} of a folder of tables, in the order of MEANING. reference: another such folder, with the same motion of the hand; tables: LogTables of its log,
-    for what only the log has; pictures: as of of_pictures()."""
+    for what only the log has; pictures: as of of_pictures(); explain: called with the reason of each comparison that is left out. Raises Refusal."""
     rows, found = tool_rows(folder, tool), {}
     if soa := largest_soa_ms(presented_ns(folder)):
         found["onset_soa_ms"] = soa[0]
@@ -145,6 +169,14 @@ def metrics(folder, reference=None, tables=None, tool=None, pictures=None):
     found.update(energies_J(rows))
     if reference:
         other = tool_rows(reference, tool)
-        found.update(of_force(other, rows) if rows and other else {})
-        found.update(of_pictures(reference, folder, pictures) if pictures else {})
+        forces = of_force(other, rows) if rows and other else {}
+        seen = of_pictures(reference, folder, pictures) if pictures else {}
+        found.update({**forces, **seen})
+        if not forces:
+            explain(f"forces are not compared: {why_no_force(other, rows)}")
+        if pictures and not seen:
+            explain("pictures are not compared: both folders need a video.mp4 of the same size")
+    for name, value in found.items():
+        if value is not None and not np.isfinite(value):
+            raise Refusal(f"{folder}: {name} is not finite; the forces in its haptic.csv are not those of a run")
     return {name: found[name] for name in MEANING if found.get(name) is not None}

@@ -22,6 +22,7 @@ import sys
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "2")
 
 from tactus.modal_analysis import analysis as analyses, modes_file, pictures
+from tactus import own_files, terminal
 from tactus.refusal import Refusal
 from tactus.modal_analysis.sound_file import read_sound
 
@@ -87,11 +88,13 @@ def write_json(path, content):
 def main(words):
     options = arguments(words)
     try:
+        for option, path in (("--out", options.out), ("--picture", options.picture)):
+            own_files.require_writable(option, path, options.compare or [options.file])
         if options.compare:
-            pictures.draw_comparison(options.picture, [(os.path.basename(p), analysed(p, options)) for p in options.compare])
+            pictures.draw_comparison(options.picture, [(terminal.readable(os.path.basename(p)), analysed(p, options)) for p in options.compare])
             return
         a = analysed(options.file, options)
-        title = options.material or os.path.splitext(os.path.basename(options.file))[0]
+        title = terminal.readable(options.material or os.path.splitext(os.path.basename(options.file))[0])
         if options.out and options.out.endswith(".xml"):
             modes_file.write_xml(options.out, a, title, options.base)
         elif options.out:

@@ -5,6 +5,7 @@ import os
 import re
 from xml.sax.saxutils import quoteattr
 
+from tactus import terminal
 from tactus.refusal import Refusal
 from tactus.paths import SCENES
 from tactus.tables import read_rows
@@ -48,6 +49,8 @@ def write_xml(path, analysis, name, base):
     if base is not None and base not in known:
         raise Refusal(f'there is no material "{base}"; give --base with one of {", ".join(known)}')
     table = os.path.splitext(path)[0] + ".modes.csv"
+    if terminal.readable(os.path.basename(table)) != os.path.basename(table):
+        raise Refusal(f"--out {path}: the material names its table, so its name must be UTF-8 without control characters; rename it")
     write_csv(table, analysis.modes)
     law = analysis.law
     words = [f"name={quoteattr(name)}"] + ([f"base={quoteattr(base)}"] if base else [])

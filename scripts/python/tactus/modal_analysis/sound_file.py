@@ -9,6 +9,7 @@ from tactus.refusal import Refusal
 
 FEWEST_SAMPLES = 256
 LONGEST_S = 60  # longer than the ringing of any struck object; design
+LARGEST, SMALLEST = 1e100, 1e-100  # of samples: their squares stay numbers
 WAYS = {(1, 8): "u1", (1, 16): "<i2", (1, 24): "24", (1, 32): "<i4", (3, 32): "<f4", (3, 64): "<f8"}
 
 
@@ -83,7 +84,9 @@ def read_channels(path):
         raise Refusal(f"{path} has {len(samples)} samples, too few to analyse; give a recording of at least {FEWEST_SAMPLES} samples")
     if not np.isfinite(samples).all():
         raise Refusal(f"{path} contains samples that are not numbers; record it again")
-    if not samples.any():
+    if np.abs(samples).max() > LARGEST:
+        raise Refusal(f"{path} contains samples of {np.abs(samples).max():.3g}, and full scale is 1; save it with a smaller gain")
+    if not np.abs(samples).max() > SMALLEST:
         raise Refusal(f"{path} is silent; record a blow")
     return samples, rate
 

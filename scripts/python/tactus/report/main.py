@@ -18,7 +18,7 @@ import os
 import sys
 import tempfile
 
-from tactus import own_files
+from tactus import own_files, terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import packages_remedy
@@ -47,6 +47,7 @@ def arguments(words):
     folder = lambda log: os.path.abspath(log) if os.path.isdir(log) else os.path.dirname(os.path.abspath(log))
     options.out = options.out or os.path.join(folder(options.log[0]), "report.html")
     options.name += [os.path.basename(folder(log)) or log for log in options.log[len(options.name):]]
+    options.name = [terminal.readable(name) for name in options.name]
     if len(set(options.name)) < len(options.name):
         options.name = [f"{name} ({i + 1})" for i, name in enumerate(options.name)]
     return options

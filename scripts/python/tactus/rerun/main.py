@@ -48,7 +48,7 @@ UNKNOWN = ("the hand touches nothing in this log, so its impedance is unknown: t
            "and only their spread is a result")
 REPRODUCED = 0.95  # design: below this share the fit does not explain the log
 STIFF_N_M, HEAVY_KG = 4000.0, 4.0  # near the limits of the virtual hand: the device did not yield
-PROGRAMS = ("replay", "export_csv", "export_log", "virtual_time")
+PROGRAMS = ("replay", "export_csv", "export_log", "virtual_time", "sync_node")
 
 
 def arguments(words):
@@ -81,6 +81,8 @@ def arguments(words):
     for program in PROGRAMS:
         if not os.access(BIN / program, os.X_OK):
             raise Refusal(f"{BIN / program} is missing; {remedy('--programs')}")
+    for file in options.profiles.values():
+        recording.run_program([BIN / "sync_node", "--check", "--degrade", file])
     return options
 
 

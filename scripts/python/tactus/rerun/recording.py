@@ -3,6 +3,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 
@@ -17,6 +18,7 @@ from tactus.refusal import Refusal
 
 CHANNELS = "LOG_INFO|DEGRADATION|PLAYOUT|SIM_COMMAND|DEVICE_FORCE"
 SHORTEST_S, LONGEST_S = 1.0, 1800.0  # design: a contact with its approach; the size of the motion file
+ENDED = re.compile(r"virtual_time: (\S+) ended; see its message above")
 LOST = ("none", "stale")  # status of the touch model without a world
 BEFORE_S = 0.3     # design: the hand before the world, from which its motion at the start follows
 GAP_S = 0.02       # design: longer gaps of the record are reported
@@ -42,15 +44,20 @@ class Recording:
     gap_s: float         # longest gap between two ticks
 
 
+def reason_of(said):
+    """The line of an output that names why its program ended: the last one; of virtual_time, the last one of the node that it names."""
+    lines = said.strip().split("\n")
+    named = ENDED.fullmatch(lines[-1])
+    return next((line for line in reversed(lines) if named and line.startswith(f"{named[1]}: ")), lines[-1])
+
+
 def run_program(words):
-    """Runs a program of the build. Raises Refusal when it fails, with its last line; of virtual_time, with the last line of the node that ended."""
+    """Runs a program of the build. Raises Refusal when it fails, with its reason."""
     if not os.access(words[0], os.X_OK):
         raise Refusal(f"{words[0]} is missing; {remedy('--programs')}")
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True, errors="replace", check=False)
     if done.returncode != 0:
-        lines = done.stderr.strip().split("\n")
-        reason = next((line for line in reversed(lines) if not line.startswith("virtual_time:")), lines[-1])
-        raise Refusal(reason or f"{words[0]} ended with status {done.returncode} without a message")
+        raise Refusal(reason_of(done.stderr) or f"{words[0]} ended with status {done.returncode} without a message")
 
 
 def rows_of(path, tool):

@@ -133,7 +133,7 @@ def main(words):
         for line in lines:
             terminal.report(line)
         if options.json:
-            pathlib.Path(options.json).write_text(json.dumps(figures, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            pathlib.Path(options.json).write_text(json.dumps(figures, indent=2, ensure_ascii=False) + "\n", encoding="utf-8", errors="backslashreplace")
         return 0
     except Refusal as refusal:
         terminal.report_refusal(f"study: {refusal}")

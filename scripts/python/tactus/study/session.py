@@ -68,7 +68,7 @@ def run_session(study, options):
             formats.export(folder)
         report(s.summary())
         if options.json:
-            pathlib.Path(options.json).write_text(json.dumps(s.figures(), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            pathlib.Path(options.json).write_text(json.dumps(s.figures(), indent=2, ensure_ascii=False) + "\n", encoding="utf-8", errors="backslashreplace")
     return 0
 
 
