@@ -101,7 +101,7 @@ class Attach(unittest.TestCase):
                 return attach.main(list(words)), said.getvalue()
 
     def test_a_cluster_that_has_ended_is_refused_with_one_sentence_of_tactus(self):
-        # The supervisor is a process that has ended and that nobody has waited for: its folder and its lock are still there.
+        # The supervisor has ended, and its parent has not read its status: its user id, folder and lock are still there.
         holder = subprocess.Popen(["true"])
         self.addCleanup(holder.wait)
         os.waitid(os.P_PID, holder.pid, os.WEXITED | os.WNOWAIT)

@@ -73,6 +73,6 @@ def entering(run):
     if "--net" not in run["namespaces"]:
         return []
     ns = f"/proc/{run['holder']}/ns"
-    if not own_files.is_own_process(run["holder"]) or not os.path.exists(f"{ns}/net"):  # the second of one that has ended and that nobody has waited for
+    if not own_files.is_own_process(run["holder"]) or not os.path.exists(f"{ns}/net"):  # a process that has ended keeps its user id until its parent reads its status
         raise Refusal("the supervisor of the cluster has ended; run tactus cluster down, and then up")
     return ["nsenter", f"--net={ns}/net", *([f"--user={ns}/user", "--preserve-credentials"] if "--user" in run["namespaces"] else [])]
