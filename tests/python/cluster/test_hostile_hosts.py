@@ -167,6 +167,15 @@ class Agent(unittest.TestCase):
             self.assertEqual({}, agent_folders.run_record(self.request))
             self.assertLessEqual(agent_folders.builds_in_use(self.request), {"ab12"})
 
+    def test_a_supervisor_that_has_ended_is_not_entered(self):
+        holder = subprocess.Popen(["true"])
+        self.addCleanup(holder.wait)
+        os.waitid(os.P_PID, holder.pid, os.WEXITED | os.WNOWAIT)
+        for pid in (holder.pid, 2**30):
+            with self.assertRaisesRegex(Refusal, "the supervisor of the cluster has ended"):
+                agent_folders.entering({"namespaces": ["--net"], "holder": pid})
+        self.assertEqual(f"--net=/proc/{os.getpid()}/ns/net", agent_folders.entering({"namespaces": ["--net"], "holder": os.getpid()})[1])
+
     def test_a_program_that_does_not_end_is_one_sentence(self):
         with self.assertRaisesRegex(Refusal, "sleep: does not end within 0.05 s"):
             agent.run_bus_program({**self.request, "words": ["/bin/sleep", "60"], "patience": 0.05})

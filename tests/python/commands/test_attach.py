@@ -1,12 +1,16 @@
 """Tests that tactus attach enters only clusters of its own user, also when another user forges a folder in the temporary folder."""
+import contextlib
+import io
 import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
 from unittest import mock
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
+SCRIPTS = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"
+sys.path.insert(0, str(SCRIPTS))
 from tactus.commands import attach
 from tactus.launch import cluster_folder
 from tactus.refusal import Refusal
@@ -89,6 +93,44 @@ class Attach(unittest.TestCase):
             folder, out = self.cluster()
             (folder / "address").write_text(text, encoding="utf-8")
             self.assertIn("no cluster is running", self.refusal(attach.cluster_of, out))
+
+    def refused(self, *words):
+        """(status, text) of a command that must not replace this process."""
+        with mock.patch("tactus.commands.prepare.replace_process", side_effect=AssertionError("the command was started")):
+            with contextlib.redirect_stderr(io.StringIO()) as said:
+                return attach.main(list(words)), said.getvalue()
+
+    def test_a_cluster_that_has_ended_is_refused_with_one_sentence_of_tactus(self):
+        # The supervisor has ended, and its parent has not read its status: its user id, folder and lock are still there.
+        holder = subprocess.Popen(["true"])
+        self.addCleanup(holder.wait)
+        os.waitid(os.P_PID, holder.pid, os.WEXITED | os.WNOWAIT)
+        _, out = self.cluster(holder=holder.pid)
+        for words in ((str(out), "true"), ("true",)):
+            status, text = self.refused(*words)
+            self.assertEqual((1, f"attach: the cluster that writes to {out} has ended; start one with tactus run --out {out}\n"), (status, text))
+        again = subprocess.run([sys.executable, "-c", "import sys; from tactus.commands import attach; sys.exit(attach.main(sys.argv[1:]))", str(out), "true"],
+                               env={**os.environ, "PYTHONPATH": str(SCRIPTS)}, capture_output=True, text=True, check=False)
+        self.assertEqual((1, "", 1), (again.returncode, again.stdout, again.stderr.count("\n")))
+        self.assertNotIn("nsenter", again.stderr)
+
+    def test_a_supervisor_whose_namespaces_cannot_be_entered_gives_the_reason_in_one_sentence(self):
+        holder = subprocess.Popen(["sh", "-c", "sleep 100 & wait"], start_new_session=True)
+        self.addCleanup(holder.wait)
+        self.addCleanup(os.killpg, holder.pid, 9)
+        while not attach.processes_of(holder.pid):
+            pass
+        _, out = self.cluster(holder=holder.pid)
+        with mock.patch.object(attach, "entering", return_value=["sh", "-c", "echo 'nsenter: setns failed: Operation not permitted' >&2; exit 1"]):
+            status, text = self.refused(str(out), "true")
+        self.assertEqual((1, 1), (status, text.count("\n")))
+        self.assertIn("cannot be entered (setns failed: Operation not permitted)", text)
+
+    def test_a_cluster_whose_namespaces_can_be_entered_is_not_refused(self):
+        _, out = self.cluster()
+        for words in ([], ["sh", "-c", "exit 0"]):
+            with mock.patch.object(attach, "entering", return_value=words):
+                attach.check_entry(attach.cluster_of(out)[1])
 
 
 if __name__ == "__main__":

@@ -104,7 +104,7 @@ def print_summary(analysis, made, page, report):
     if "limits" in made:
         print(f"{'limit':9} {'sense':9} {'operator':10} {'by':34} {'value':>9} {'low':>9} {'high':>9} unit")
         for row in made["limits"]:
-            beyond = "unknown" if math.isnan(row["value"]) else ("<" if row["operator"] in operators.LOWER_IS_WORSE else ">") + f"{row['up_to']:.4g}"  # not reached up to this level
+            beyond = "unknown" if math.isnan(row["value"]) else ("<" if operators.kind(row["operator"]) in operators.LOWER_IS_WORSE else ">") + f"{row['up_to']:.4g}"  # not reached up to this level
             fields = [f"{row[k]:9.4g}" if math.isfinite(row[k]) else f"{beyond:>9}" for k in ("value", "low", "high")]
             print(f"{row['limit']:9} {row['modality']:9} {row['operator']:10} {row['by']:34} {' '.join(fields)} {row['unit']}")
         for note in dict.fromkeys(row["note"] for row in made["limits"] if row["note"]):

@@ -11,10 +11,15 @@ GAIN_ABOVE = "gain_above_1"  # a gain above 1 is a separate factor, whose severi
 NAME = {"haptic": "touch", "audio": "sound", "visual": "vision", "thermal": "warmth"}
 
 
+def kind(operator):
+    """The operator without its choices: "deadband" of "deadband predict=linear"."""
+    return operator.partition(" ")[0]
+
+
 def factor(modality, operator, unit="", level=math.nan):
     """The Factor of a row of a table; the level matters only for a gain."""
-    if operator == "gain" and (level == 0 or level > 1):
-        return Factor(modality, GAIN_ABOVE if level else NO_GAIN, unit)
+    if kind(operator) == "gain" and (level == 0 or level > 1):
+        return Factor(modality, (GAIN_ABOVE if level else NO_GAIN) + operator.removeprefix("gain"), unit)
     return Factor(modality, operator, unit)
 
 
@@ -26,34 +31,42 @@ def factors(trials):
 
 @dataclasses.dataclass(frozen=True, order=True)
 class Factor:
-    """A sense and the operator that degrades it."""
+    """A sense and the operator that degrades it, with the choices of the operator after a blank."""
     modality: str
     operator: str
     unit: str = ""
 
     @property
     def removal(self):
-        return self.operator in REMOVALS
+        return kind(self.operator) in REMOVALS
 
     @property
     def lower_is_worse(self):
         """Whether a lower level is worse."""
-        return self.operator in LOWER_IS_WORSE
+        return kind(self.operator) in LOWER_IS_WORSE
+
+    @property
+    def from_one(self):
+        return kind(self.operator) in FROM_ONE
+
+    @property
+    def gain_above(self):
+        return kind(self.operator) == GAIN_ABOVE
 
     def severity(self, level):
         """Severity, 0 or more, of a level that trials.read accepts."""
-        return 1.0 / level - (self.operator in FROM_ONE) if self.lower_is_worse else level - (self.operator == GAIN_ABOVE)
+        return 1.0 / level - self.from_one if self.lower_is_worse else level - self.gain_above
 
     def level(self, severity):
         """The level of a severity; inverse of severity()."""
         if not self.lower_is_worse:
-            return severity + (self.operator == GAIN_ABOVE)
-        inverse = severity + (self.operator in FROM_ONE)
+            return severity + self.gain_above
+        inverse = severity + self.from_one
         return 1.0 / inverse if inverse else math.inf
 
     def undegraded(self, level):
         """Whether the level has no effect."""
-        return not self.removal and level == (1 if self.operator in FROM_ONE else math.nan if self.lower_is_worse else 0)
+        return not self.removal and level == (1 if self.from_one else math.nan if self.lower_is_worse else 0)
 
     def sense(self):
         """The sense as text, with its stage of touch: "touch (percept)"."""
@@ -67,4 +80,4 @@ class Factor:
         return f"{self.operator.replace('_', ' ')} of {self.sense()}" + (f" ({self.unit})" if self.unit else "")
 
     def severity_axis(self):
-        return f"1 / {self.axis()}" + (" − 1" if self.operator in FROM_ONE else "") if self.lower_is_worse else self.axis()
+        return f"1 / {self.axis()}" + (" − 1" if self.from_one else "") if self.lower_is_worse else self.axis()

@@ -98,9 +98,9 @@ def games_of(trials):
 def achieved_of(games, degraded):
     """Mean measured level of a condition with one factor; the requested level if none was measured."""
     (factor, level), = degraded
-    if factor.operator == "loss" and not np.isnan(games["loss_achieved"]).all():
+    if operators.kind(factor.operator) == "loss" and not np.isnan(games["loss_achieved"]).all():
         return float(np.nanmean(games["loss_achieved"])) * (100 if factor.unit == "%" else 1)
-    if factor.operator == "delay" and not np.isnan(games["soa_achieved_ms"]).all():
+    if operators.kind(factor.operator) == "delay" and not np.isnan(games["soa_achieved_ms"]).all():
         first, second = answers.pair_of(games["pair"][0])
         sign = 1 if second == factor.modality else -1 if first == factor.modality else 0
         if sign and factor.unit == "ms":

@@ -77,9 +77,9 @@ def achieved(rows, condition):
     if condition[1] is not None:
         return rows["soa_achieved_ms"], True
     factor = condition[2]
-    if factor.operator == "loss" and not np.isnan(rows["loss_achieved"]).all():
+    if operators.kind(factor.operator) == "loss" and not np.isnan(rows["loss_achieved"]).all():
         return rows["loss_achieved"] * (100 if factor.unit == "%" else 1), True
-    if factor.operator == "delay" and factor.unit == "ms" and not np.isnan(rows["soa_achieved_ms"]).all():
+    if operators.kind(factor.operator) == "delay" and factor.unit == "ms" and not np.isnan(rows["soa_achieved_ms"]).all():
         return np.abs(rows["soa_achieved_ms"]), True
     return np.array([factor.severity(level) for level in rows["level"]]), False
 

@@ -83,11 +83,12 @@ def no_severity(row):
     """Reason why the level of a row gives no severity, as a sentence; None: it does, or nothing is degraded."""
     for prefix, modality in (("", "modality_degraded"), ("second_", "second_modality")):
         operator, level = row.get(prefix + "operator"), row.get(prefix + "level")
-        if not row.get(modality) or not operator or operator in operators.REMOVALS:
+        kind = operators.kind(operator or "")
+        if not row.get(modality) or not operator or kind in operators.REMOVALS:
             continue
         if level is None and row["task"] == "game":
             return f"a game under {operator} has no {prefix}level; write its level"
-        falls = operator in operators.LOWER_IS_WORSE and operator != "gain"
+        falls = kind in operators.LOWER_IS_WORSE and kind != "gain"
         if level is not None and (level < 0 or falls and level == 0):
             return f"{prefix}level is {level:g}; a level of {operator} must be {'above 0; use the operator off for nothing at all' if falls else '0 or more'}"
     return None

@@ -72,7 +72,7 @@ def entering(run):
     """Command words that enter the network of a running cluster; the command follows. Raises Refusal."""
     if "--net" not in run["namespaces"]:
         return []
-    if not own_files.is_own_process(run["holder"]):
-        raise Refusal("the supervisor of the cluster has ended; run tactus cluster down, and then up")
     ns = f"/proc/{run['holder']}/ns"
+    if not own_files.is_own_process(run["holder"]) or not os.path.exists(f"{ns}/net"):  # a process that has ended keeps its user id until its parent reads its status
+        raise Refusal("the supervisor of the cluster has ended; run tactus cluster down, and then up")
     return ["nsenter", f"--net={ns}/net", *([f"--user={ns}/user", "--preserve-credentials"] if "--user" in run["namespaces"] else [])]

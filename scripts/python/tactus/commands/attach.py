@@ -2,6 +2,7 @@
 import os
 import pathlib
 import shutil
+import subprocess
 import tempfile
 
 from tactus import environment, own_files
@@ -77,6 +78,30 @@ def entering(found):
     return words
 
 
+def check_entry(found):
+    """Raises Refusal when the namespaces of the cluster cannot be entered: a cluster that ends loses its processes before its folder and its lock."""
+    words = entering(found)
+    if not words:
+        return
+    if not shutil.which(words[0]):
+        raise Refusal(f"{words[0]} is not installed, which enters the network of a cluster; install the package util-linux")
+    trial = subprocess.run([*words, "true"], stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False)
+    if trial.returncode == 0:
+        return
+    if not own_files.is_own_process(found["holder"]) or not processes_of(found["holder"]):
+        raise Refusal(f"the cluster that writes to {found['out']} has ended; start one with tactus run --out {found['out']}")
+    raise Refusal(f"the network of the cluster that writes to {found['out']} cannot be entered ({trial.stderr.strip().removeprefix('nsenter: ')}); end the cluster "
+                  "with Ctrl-C in its terminal, and start another one")
+
+
+def processes_of(holder):
+    """The processes that the supervisor of a cluster has started, as text; "": it has ended, or they have."""
+    try:
+        return pathlib.Path(f"/proc/{holder}/task/{holder}/children").read_text(encoding="ascii")
+    except OSError:
+        return ""
+
+
 def main(words):
     if not words or words[0] in ("--help", "-h"):
         return prepare.print_usage(USAGE, requested=bool(words))
@@ -93,6 +118,7 @@ def main(words):
             words = [str(TACTUS), *words[1:]]
         if not shutil.which(words[0], path=there["PATH"]):
             raise Refusal(f"there is no command {words[0]}; see tactus attach --help for examples")
+        check_entry(found)
     except Refusal as refusal:
         return prepare.refuse("attach", refusal)
     prepare.replace_process([*entering(found), *words], there)

@@ -17,6 +17,7 @@ smallest slowing that games show."""
 MAX_SHOWN = 20       # trials of the plan, in --json
 MAX_PARTICIPANTS = 10_000
 CHECK_TIMEOUT_S = 60
+MAX_RULES = 64  # of one profile: sync/degradation/parse_profile.cpp
 
 
 class Parser(argparse.ArgumentParser):
@@ -53,16 +54,24 @@ def profiles(study):
         return f"profiles not checked: {BIN} holds no sync_node; {remedy()}"
     if not elements:
         return "the study has no degradations"
+    for begin in range(0, len(elements), MAX_RULES):
+        if sentence := invalid(elements[begin:begin + MAX_RULES]):
+            raise Refusal(f"{study.path}: {sentence}")
+    return f"all {len(elements)} degradations are valid"
+
+
+def invalid(elements):
+    """The reason why sync_node does not accept these elements of one profile, at most MAX_RULES, as a sentence; "": it accepts them."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "profile.xml"
         file.write_text("<profile>\n" + "\n".join(elements) + "\n</profile>\n", encoding="utf-8")
         done = subprocess.run([BIN / "sync_node", "--degrade", file, "--check"], capture_output=True, text=True, errors="replace", timeout=CHECK_TIMEOUT_S, check=False)
-    if done.returncode:
-        said = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        line, _, reason = said.partition(f"{file}:")[2].partition(": ")
-        of = elements[int(line) - 2] if line.isdigit() and 2 <= int(line) < len(elements) + 2 else "a profile"
-        raise Refusal(f"{study.path}: {of} is not valid: {reason or said}")
-    return f"all {len(elements)} degradations are valid"
+    if not done.returncode:
+        return ""
+    said = (done.stderr.strip().splitlines() or ["no message"])[-1]
+    line, _, reason = said.partition(f"{file}:")[2].partition(": ")
+    of = elements[int(line) - 2] if line.isdigit() and 2 <= int(line) < len(elements) + 2 else "a profile"
+    return f"{of} is not valid: {reason or said}"
 
 
 def sequence(plan):

@@ -8,10 +8,12 @@ SENSES = ("haptic", "audio", "visual", "thermal")
 
 @dataclasses.dataclass(frozen=True)
 class Factor:
-    """One sense and the operator that degrades it, at a level in the operator's unit (quantities.OPERATORS). stage: of touch; "": its input."""
+    """One sense and the operator that degrades it, at a level in the operator's unit (quantities.OPERATORS). stage: of touch; "": its input.
+    choices: ((name, value), ...) of quantities.CHOICES that change something."""
     modality: str
     operator: str
     stage: str = ""
+    choices: tuple = ()
 
     @property
     def unit(self):
@@ -19,14 +21,19 @@ class Factor:
 
     def degrade(self, level):
         """Element of a profile; "": this level has no effect."""
-        return "" if quantities.nothing(self.operator, level) else quantities.degrade(self.modality, self.operator, level, self.stage)
+        return "" if quantities.nothing(self.operator, level) else quantities.degrade(self.modality, self.operator, level, self.stage, self.choices)
 
     def words(self):
-        return f"{stages.named(self.modality, self.stage)} {self.operator}"
+        return f"{stages.named(self.modality, self.stage)} {self.name}"
+
+    @property
+    def name(self):
+        """The operator with its choices, as tables name it: "deadband predict=linear"."""
+        return " ".join((self.operator, *(f"{name}={value}" for name, value in self.choices)))
 
 
-def factor(modality, operator, stage, levels):
-    """A Factor; stage: the attribute of the file, or None. Raises ValueError with one sentence when the modality does not have the operator at these levels."""
+def factor(modality, operator, stage, levels, choices):
+    """A Factor; stage: the attribute of the file, or None; choices: {name: value} of quantities.CHOICES. Raises ValueError with one sentence when the modality does not have the operator at these levels."""
     only = quantities.OUTPUT_OF.get(operator)
     if only not in (None, modality):
         raise ValueError(f"{modality} has no operator {operator}; only {only} has it")
@@ -36,7 +43,7 @@ def factor(modality, operator, stage, levels):
     low = [l for l in levels if 0 < l < quantities.SMALLEST.get(operator, 0)]
     if low:
         raise ValueError(f"the level {low[0]:g} of {operator} is too small; give 0, or at least {quantities.SMALLEST[operator]:g} {quantities.OPERATORS[operator][0]}")
-    return Factor(modality, operator, stage)
+    return Factor(modality, operator, stage, stages.choices(choices, operator, stage))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -95,7 +102,7 @@ class Condition:
             names = (("modality_degraded", "operator", "level", "unit"), ("second_modality", "second_operator", "second_level", "second_unit"))
             row = {}
             for factor, l, columns in zip(self.factors, levels, names):
-                row.update(zip(columns, (stages.named(factor.modality, factor.stage), factor.operator, l, factor.unit)))
+                row.update(zip(columns, (stages.named(factor.modality, factor.stage), factor.name, l, factor.unit)))
                 if factor.operator == "loss":
                     row["loss_nominal"] = l / 100
             return row

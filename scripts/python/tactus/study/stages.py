@@ -1,10 +1,14 @@
 """Stages of touch in study files: places in its loop at which a degradation acts (docs/concepts/touch_stages.md). "" is its input, the stage model."""
 
 # Operators of quantities.OPERATORS that each stage beside the input has: sync/degradation/parse_profile.cpp and haptic_node/modality.csv.
-STAGES = {"action": ("delay", "network_delay", "jitter", "loss", "rate"),
+STAGES = {"action": ("delay", "network_delay", "jitter", "loss", "rate", "deadband"),
           **dict.fromkeys(("force", "percept"), ("delay", "network_delay", "jitter", "loss", "rate", "deadband", "quantise", "gain", "lowpass"))}
 MODEL, PERCEPT = "model", "percept"
+NEUTRAL = ("hold", "none")  # choices that change nothing: the first ones of quantities.CHOICES
 LONGEST_MS = {"action": 1000, "force": 1000, "percept": 2000}  # delay of a stage, with the spread of its jitter
+DEADBAND_OF = {"action": " velocity", "force": " force", "percept": " force"}  # quantity that a deadband compares
+# Choices of quantities.CHOICES: the operators and the stages ("": the input) that have them; None: every operator of the stage.
+CHOICES_OF = {"predict": (("deadband",), tuple(STAGES)), "passivity": (None, ("force",)), "conceal": (("loss",), ("", "force", "percept"))}
 JITTER_SPREADS = 6  # of a jitter, in standard deviations: its constant delay (quantities.JITTER_DELAY), and the spread that it needs around it
 
 
@@ -34,3 +38,15 @@ def of(text, modality, operator, levels=()):
     if longest > LONGEST_MS[stage]:
         raise ValueError(f"{operator} delays the stage {stage} by up to {longest:g} ms; at most {LONGEST_MS[stage]} ms are possible, so give smaller levels")
     return stage
+
+
+def choices(given, operator, stage):
+    """((name, value), ...) of the choices of a factor that change something. given: {name: value}. Raises ValueError with one sentence when the operator or the stage
+    does not have one of them."""
+    for name in given:
+        operators, places = CHOICES_OF[name]
+        if operators is not None and operator not in operators:
+            raise ValueError(f"{name}= belongs to {' or '.join(operators)} and not to {operator}; remove it")
+        if stage not in places:
+            raise ValueError(f"{name}= has no effect at the stage {stage or MODEL}; give stage=\"{places[-1]}\", or remove it")
+    return tuple((name, value) for name, value in given.items() if value not in NEUTRAL)

@@ -27,7 +27,7 @@ JUDGED = {"tap": "asynchrony", "press": "factor"}  # kind of condition that each
 SOFTER = "Which of the two felt softer?"  # default question for two presses of a study of stiffness
 # The haptic node adapts its coupling to these operators of its input and recovers within seconds (LoopDelay in haptic_node/rendering/coupling.h). A degraded
 # press would therefore also soften the next press. A delay of the output ends immediately.
-SLOW_RECOVERY = ("network_delay", "jitter", "loss", "rate", "deadband")
+SLOW_RECOVERY = ("network_delay", "jitter", "loss", "wire_loss", "reorder", "rate", "deadband")
 ENCODINGS = ("UTF-8", "US-ASCII", "ASCII")  # of the declaration of a file; ASCII is a part of UTF-8
 
 
@@ -225,7 +225,8 @@ class Reading:
         levels = tuple(quantities.read(t, quantities.OPERATORS[e.get("operator")], self.where(e)) for t in e.get("levels").split())
         self.distinct(e, levels)
         modality = self.sense(e, e.get("modality"))
-        return self.checked(e, conditions.factor, modality, e.get("operator"), e.get("stage"), levels), levels
+        choices = {name: e.get(name) for name in quantities.CHOICES if e.get(name) is not None}
+        return self.checked(e, conditions.factor, modality, e.get("operator"), e.get("stage"), levels, choices), levels
 
     def checked(self, e, make, *of):
         """make(*of), whose ValueError is a refusal of the element."""
