@@ -1,5 +1,6 @@
 """Tests of the metrics: values that were computed with another program, bounds for random signals, and runs whose metrics are known."""
 import csv
+import os
 import pathlib
 import sys
 import tempfile
@@ -11,6 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
 from tactus.metrics import age, codec, compare, of_run, ranking
+from tactus.refusal import Refusal
 
 T = np.arange(1000) * 1e-3
 SWELL = 1 + 0.5 * np.sin(2 * np.pi * T)
@@ -177,6 +179,38 @@ class Runs(unittest.TestCase):
         found = of_run.metrics(self.run_folder("one"))
         self.assertEqual(list(found), ["onset_soa_ms", "injected_J", "generated_J"])
 
+    def test_a_table_of_another_form_is_refused_with_one_sentence(self):
+        names = "time_s,tool,force_x_N,force_y_N,force_z_N,injected_J,generated_J\n"
+        for file, text, reason in (("haptic.csv", "a,b\n1,2\n", "has no column time_s"), ("haptic.csv", "time_s,tool\n1,0\n", "has no column force_x_N"),
+                                   ("haptic.csv", names + "1,0,x,0,0,0,0\n", "'x' in the column force_x_N is not a finite number"),
+                                   ("haptic.csv", names + "1,0,0,nan,0,0,0\n", "'nan' in the column force_y_N"), ("haptic.csv", names + "1,0,0,0,0,1e999,0\n", "'1e999'"),
+                                   ("haptic.csv", names + "1,0\n", "has 2 fields"),
+                                   ("presented.csv", "presented_ns,outcome\n1,late\n", "has no column modality"),
+                                   ("presented.csv", "event_id,modality,part,outcome,presented_ns\n1,audio,onset,late,soon\n", "'soon' in the column presented_ns")):
+            with self.subTest(text=text):
+                for old in self.folder.glob("*.csv"):
+                    old.unlink()
+                (self.folder / file).write_text(text, encoding="utf-8")
+                with self.assertRaises(Refusal) as refused:
+                    of_run.metrics(str(self.folder))
+                self.assertIn(reason, str(refused.exception))
+                self.assertNotIn("\n", str(refused.exception))
+        (self.folder / "presented.csv").unlink()
+        (self.folder / "haptic.csv").write_bytes(b"\xff\xfe")
+        self.assertRaises(Refusal, of_run.metrics, str(self.folder))
+        (self.folder / "haptic.csv").unlink()
+        os.mkfifo(self.folder / "haptic.csv")  # is not waited for
+        self.assertEqual({}, of_run.metrics(str(self.folder)))
+
+    def test_the_packets_of_a_deadband_are_those_of_its_own_stage(self):
+        class Decisions:
+            def messages(self, _):
+                decision = lambda i, ms, why: {f"decisions[{i}].is_event": "0", f"decisions[{i}].drop_reason": str(why), f"decisions[{i}].time_ns": str(ms * 1_000_000)}
+                for ms in range(0, 1001):  # the stage model sends all updates, the stage force one in ten
+                    yield {"sender": "haptic_node", "modality": "haptic", "count": "1", **decision(0, ms, 0)}
+                    yield {"sender": "haptic_node", "modality": "haptic:force", "count": "1", **decision(0, ms, 0 if ms % 10 == 0 else 2)}
+        self.assertAlmostEqual(101.0, of_run.sent_per_s(Decisions()))
+
     def test_every_metric_has_unit_and_meaning(self):
         for unit, meaning, _ in of_run.MEANING.values():
             self.assertTrue(unit and meaning)
@@ -221,8 +255,8 @@ class Ranking(unittest.TestCase):
 
     def test_conditions_are_read_from_a_table_of_games(self):
         row = lambda modality, operator, level, success, second="": {"modality_degraded": modality, "operator": operator, "level": level, "success": success, "second_modality": second}
-        rows = [row("haptic", "delay", "40", "1"), row("haptic", "delay", "40", "0"), row("", "", "", "1"), row("haptic", "off", "", "0"), row("audio", "delay", "40", "1"),
-                row("visual", "rate", "5", "1", "haptic"), row("visual", "rate", "5", "")]
+        rows = [row("haptic", "delay", 40.0, 1), row("haptic", "delay", 40.0, 0), row("", "", None, 1), row("haptic", "off", None, 0), row("audio", "delay", 40.0, 1),
+                row("visual", "rate", 5.0, 1, "haptic"), row("visual", "rate", 5.0, None)]
         found = {(c["modality"], c["operator"], c["level"]): (c["won"], c["games"]) for c in ranking.conditions_of(rows)}
         self.assertEqual(found, {("haptic", "", 0): (1, 1), ("visual", "", 0): (1, 1), ("haptic", "delay", 40): (1, 2)})
 

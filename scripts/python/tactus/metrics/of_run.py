@@ -1,11 +1,12 @@
 """The metrics of one run, or of one rendering of a log, from its tables. A metric whose data the tables lack is left out."""
-import csv
 import os
 
 import numpy as np
 
 from tactus.log import log_tables
 from tactus.metrics import age, compare
+from tactus.refusal import Refusal
+from tactus.tables import read_rows
 
 FORCE_RATE_HZ = 200.0  # of the forces that are compared: 5 ms are finer than any published limit of a delayed force (design)
 MAX_LAG_S = 0.4        # the largest delay of force that is looked for (design)
@@ -27,32 +28,54 @@ MEANING = {
 }
 
 
+def cell(path, row, name, kind=float):
+    """A number of a row of a table of the user, 0 for an empty cell. Raises Refusal when the column is missing or the cell holds no finite number."""
+    try:
+        value = kind(row[name] or 0)
+    except KeyError:
+        raise Refusal(f"{path}: has no column {name}; give a table of tactus run, rerender or export") from None
+    except ValueError:
+        value = np.nan
+    if not np.isfinite(value):
+        raise Refusal(f"{path}: '{row[name]}' in the column {name} is not a finite number; make the table again")
+    return value
+
+
+def rows_of(path, *columns):
+    """Rows of a table of the user, which has these columns. Raises Refusal."""
+    rows = read_rows(path)
+    for name in columns:
+        if rows and name not in rows[0]:
+            raise Refusal(f"{path}: has no column {name}; give a table of tactus run, rerender or export")
+    return rows
+
+
 def tool_rows(folder, tool=None):
-    """{column: array} of one tool of haptic.csv; tool None: the first with a simulated time. {} without such a table."""
+    """{column: array} of one tool of haptic.csv; tool None: the first with a simulated time. {} without such a table. Raises Refusal."""
     path = os.path.join(folder, "haptic.csv")
-    if not os.path.exists(path):
+    if not os.path.isfile(path):
         return {}
-    wanted = ("time_s", "force_x_N", "force_y_N", "force_z_N", "injected_J", "generated_J")
-    columns = {name: [] for name in wanted}
-    with open(path, encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            tool = row["tool"] if tool is None and row["time_s"] else tool
-            if row["tool"] == tool and row["time_s"]:
-                for name in wanted:
-                    columns[name].append(float(row.get(name) or 0))
+    columns = {name: [] for name in ("time_s", "force_x_N", "force_y_N", "force_z_N", "injected_J", "generated_J")}
+    older = ("injected_J", "generated_J")  # tables from before lack them
+    for row in rows_of(path, "time_s", "tool"):
+        tool = row["tool"] if tool is None and row["time_s"] else tool
+        if row["tool"] == tool and row["time_s"]:
+            for name, values in columns.items():
+                values.append(0.0 if name in older and name not in row else cell(path, row, name))
     return {name: np.array(values) for name, values in columns.items()} if columns["time_s"] else {}
 
 
 def presented_ns(folder):
-    """{modality: {event: ns}}, of presented.csv of a run or presented_MODALITY.csv of a rendering; only the hits of touch."""
+    """{modality: {event: ns}}, of presented.csv of a run or presented_MODALITY.csv of a rendering; only the hits of touch. Raises Refusal."""
     found = {}
     for name in sorted(os.listdir(folder)):
-        if not name.startswith("presented") or not name.endswith(".csv"):
+        path = os.path.join(folder, name)
+        if not name.startswith("presented") or not name.endswith(".csv") or not os.path.isfile(path):
             continue
-        with open(os.path.join(folder, name), encoding="utf-8", newline="") as file:
-            for row in csv.DictReader(file):
-                if int(row["presented_ns"]) >= 0 and row["outcome"] in log_tables.PRESENTED and (row["modality"], row["part"]) != ("haptic", "constraint"):
-                    found.setdefault(row["modality"], {}).setdefault(row["event_id"], int(row["presented_ns"]))
+        for row in rows_of(path, "presented_ns", "outcome", "modality", "part", "event_id"):
+            at = cell(path, row, "presented_ns", int)
+            if at >= 0 and row["outcome"] in log_tables.PRESENTED and (row["modality"], row["part"]) != ("haptic", "constraint"):
+                found.setdefault(row["modality"], {}).setdefault(row["event_id"], at)
     return found
 
 
@@ -121,16 +144,20 @@ def of_pictures(reference, other, pictures, every=15):
 
 def sent_per_s(tables):
     """Packets per second that the deadband of a stage of touch sends; None without one."""
-    sent, suppressed, times = 0, 0, []
+    streams = {}  # {(process, modality and stage): [sent, suppressed, times]}; another stage may have many more updates
     for message in tables.messages("DEGRADED.csv"):
         if not message["modality"].startswith("haptic"):
             continue
         for i in range(int(message["count"])):
+            if int(message[f"decisions[{i}].is_event"]):
+                continue
             why = int(message[f"decisions[{i}].drop_reason"])
-            suppressed += why == log_tables.DROP_REASONS.index("deadband")
-            sent += why in (0, log_tables.DROP_REASONS.index("loss"))
-            times.append(int(message[f"decisions[{i}].time_ns"]) * 1e-9)
-    return sent / (max(times) - min(times)) if suppressed and max(times) > min(times) else None
+            own = streams.setdefault((message["sender"], message["modality"]), [0, 0, []])
+            own[0] += why in (0, log_tables.DROP_REASONS.index("loss"))
+            own[1] += why == log_tables.DROP_REASONS.index("deadband")
+            own[2].append(int(message[f"decisions[{i}].time_ns"]) * 1e-9)
+    rates = [sent / (max(times) - min(times)) for sent, suppressed, times in streams.values() if suppressed and max(times) > min(times)]
+    return sum(rates) if rates else None
 
 
 def metrics(folder, reference=None, tables=None, tool=None, pictures=None):
