@@ -73,6 +73,37 @@ class TaskFiles(unittest.TestCase):
             self.assertIn(reason, str(caught.exception))
             self.assertIn("t.task.xml:5: ", str(caught.exception))
 
+    def test_an_attribute_needs_a_valid_name(self):
+        for at in ("model[@name='b']/@tactus:x", "model[@name='b']/@a b", "model[@name='b']/@{a"):
+            task = self.read(TASK.replace("model[@name='b']/pose\" to=\"2", f"{at}\" to=\"2"))
+            with self.subTest(at), self.assertRaisesRegex(Refusal, "t.task.xml:5: .* is not the name of an attribute"):
+                task_file.changed_scene(task.scene, task.variants[0])
+
+    def test_a_scene_outside_the_folder_of_the_task_is_refused(self):
+        (self.folder / "below").mkdir()
+        (self.folder / "below" / "scene.sdf").write_text(SCENE, encoding="utf-8")
+        self.assertEqual("scene.sdf", self.read(TASK.replace("scene.sdf", "below/scene.sdf")).scene.name)
+        for name in ("/etc/passwd", "../scene.sdf", "below/../../scene.sdf"):
+            with self.subTest(name), self.assertRaisesRegex(Refusal, "t.task.xml:1: the scene .* is outside the folder"):
+                self.read(TASK.replace("scene.sdf", name))
+        with self.assertRaisesRegex(Refusal, "there is no scene"):
+            self.read(TASK.replace("scene.sdf", "x" * 5000))
+
+    def test_a_hostile_scene_is_refused_with_one_sentence(self):
+        task = self.read(TASK)
+        for text, reason in ((b"<sdf/>", "has no <world>"), (b"<sdf", "scene.sdf:1: "), (b'<!DOCTYPE s [<!ENTITY a "' + b"a" * 1000 + b'">]><sdf>&a;</sdf>', "DOCTYPE"),
+                             (b"<a>" * 1000, "depth"), (b"\xff\xfe<", "UTF-16"), (b"<sdf>" + b" " * task_file.LARGEST_SCENE_BYTES, "is longer than")):
+            (self.folder / "scene.sdf").write_bytes(text)
+            with self.subTest(text[:20]), self.assertRaises(Refusal) as caught:
+                task_file.changed_scene(task.scene, ())
+            self.assertIn(reason, str(caught.exception))
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_a_vibration_has_its_frequency_at_any_rate_of_touch(self):
+        for rate in (500, 1000, 4000):
+            wave = np.sin(2 * np.pi * 120 * np.arange(rate // 4) / rate)
+            self.assertAlmostEqual(120, math.exp(touch.vibration_log(wave, 0.1, 1 / rate)), delta=3)
+
     def test_warnings_of_the_scene_are_found_in_the_output_of_a_run(self):
         self.assertTrue(rendering.WARNING.match('sim_node: /tmp/x/scene.sdf:6: /sdf/world[@name="w"]/wind is not supported and has no effect'))
         self.assertFalse(rendering.WARNING.match("sim_node: 1000 Hz, virtual time, a bus of this process"))

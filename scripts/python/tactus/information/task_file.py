@@ -3,13 +3,14 @@ import dataclasses
 import pathlib
 import re
 
-from tactus import own_xml
+from tactus import own_files, own_xml
 from tactus.paths import SCENES
 from tactus.refusal import Refusal
 
 SHIPPED = SCENES / "tasks"
 SUFFIX = ".task.xml"
 MAX_RENDERINGS = 10_000
+LARGEST_SCENE_BYTES = 20_000_000  # design
 SENSES = ("visual", "audio", "haptic", "thermal")
 NAMESPACES = {"tactus": "https://tactus.dev/sdf"}
 SECONDS = {"ms": 1e-3, "s": 1.0}
@@ -51,7 +52,6 @@ def shipped():
 
 def read(text):
     """Task of a file, or of the shipped task of that name. Raises Refusal with the line."""
-    from lxml import etree  # slow to import
     path = find(text)
     root, _ = own_xml.root_of(path, text, "a task file", shipped())
     return Reading(text, path, root).task()
@@ -120,10 +120,12 @@ class Reading:
                     " ".join((question.text or "").split()) if question is not None else "", values, variants, self.windows(seconds))
 
     def scene(self):
-        """The scene, beside the task file first, then among those of Tactus."""
+        """The scene, beside the task file or below its folder first, then among those of Tactus."""
         name = self.root.get("scene")
+        if pathlib.PurePath(name).is_absolute() or ".." in pathlib.PurePath(name).parts:
+            self.refuse(self.root, f"the scene {name} is outside the folder of the task file; copy it beside the task file")
         for folder in (self.path.parent, SHIPPED, SCENES):
-            if (folder / name).is_file():
+            if own_files.is_regular(folder / name):
                 return (folder / name).absolute()
         self.refuse(self.root, f"there is no scene {name} beside the task file; correct scene")
 
@@ -131,11 +133,8 @@ class Reading:
 def changed_scene(scene, changes):
     """XML of the scene with these changes, in order. Raises Refusal."""
     from lxml import etree
-    try:
-        tree = etree.parse(str(scene), etree.XMLParser(resolve_entities=False, no_network=True))
-    except (OSError, etree.XMLSyntaxError) as error:
-        raise Refusal(f"{scene}: cannot be read ({error}); check it with sim_node --check") from None
-    world = tree.getroot().find("world")
+    root, _ = own_xml.root_of(scene, str(scene), "an SDF file with a world", largest_bytes=LARGEST_SCENE_BYTES, keeps_comments=True)
+    world = root.find("world")
     if world is None:
         raise Refusal(f"{scene}: has no <world>; give an SDF file with a world")
     for change in changes:
@@ -147,8 +146,11 @@ def changed_scene(scene, changes):
         if not isinstance(found, list) or len(found) != 1 or not isinstance(found[0], etree._Element):
             raise Refusal(f"{change.where}: at=\"{change.at}\" names {len(found) if isinstance(found, list) else 'no'} elements of the world of {scene.name}; "
                           "it must name one")
-        if attribute:
-            found[0].set(attribute, change.to)
-        else:
-            found[0].text = change.to
-    return etree.tostring(tree, xml_declaration=True, encoding="UTF-8")
+        try:
+            if attribute:
+                found[0].set(attribute, change.to)
+            else:
+                found[0].text = change.to
+        except ValueError:
+            raise Refusal(f"{change.where}: at=\"{change.at}\": {attribute} is not the name of an attribute; write for example model[@name='ball']/@name") from None
+    return etree.tostring(root.getroottree(), xml_declaration=True, encoding="UTF-8")
