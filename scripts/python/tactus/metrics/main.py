@@ -23,10 +23,12 @@ import os
 import sys
 import tempfile
 
+from tactus import terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import packages_remedy
 from tactus.refusal import Refusal
+from tactus.tables import escaped
 
 
 def arguments(words):
@@ -72,7 +74,7 @@ def beside(path):
 def show(found):
     from tactus.metrics import of_run
     for path, metrics in found.items():
-        print(path)
+        print(terminal.one_line(path))
         for name, value in metrics.items():
             unit, meaning, _ = of_run.MEANING[name]
             print(f"  {name:22} {value:12.6g} {'' if unit == '1' else unit:4} {meaning}")
@@ -89,7 +91,7 @@ def write(options, found):
         with open(options.csv, "w", encoding="utf-8", newline="") as file:
             table = csv.DictWriter(file, ["run", *of_run.MEANING], lineterminator="\n")
             table.writeheader()
-            table.writerows({"run": path, **metrics} for path, metrics in found.items())
+            table.writerows({"run": escaped(path), **metrics} for path, metrics in found.items())
 
 
 def main(words):
