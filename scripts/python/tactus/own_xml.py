@@ -1,4 +1,4 @@
-"""XML files of the user: studies, tasks and experiments. Reads one without entities, network access or large amounts of memory."""
+"""XML files of the user: studies, tasks, experiments and clusters. Reads one without entities, network access or large amounts of memory."""
 from tactus import own_files
 from tactus.refusal import Refusal
 from tactus.tables import decoded
