@@ -13,9 +13,10 @@ bool no_wrench(const Wrench& w) { return w.force_N.isZero(0) && w.torque_N_m.isZ
 
 }  // namespace
 
-ForceStage::ForceStage(const Settings& settings) : injected_(injected_limits(settings)) {}
+ForceStage::ForceStage(const Settings& settings) : limits_(safety_limits(settings)), injected_(injected_limits(settings)) {}
 
 void ForceStage::change(const Settings& settings) {
+  limits_ = safety_limits(settings);
   injected_.change(injected_limits(settings));
   if (reaction_) reaction_->set_limits(safety_limits(settings));
 }
@@ -56,13 +57,12 @@ void ForceStage::observe(double stored_J, const DeviceMotion& motion, const Forc
 
 void ForceStage::observe_tdpa(const Wrench& displayed, const Wrench& computed, const DeviceMotion& motion, double span_s, double dt) {
   const bool controls = operators_->passivity(world_) == sync::Passivity::kTdpa;
-  if (controls != controls_) {
-    tdpa_.reset();
-    released_J_ = motion_s_ = apart_s_ = 0;
+  if (controls && !controls_) {
+    // The packets on their way promise nothing.
+    tdpa_.begin(released_J_);
     same_ = true;
-    controls_ = controls;
   }
-  if (!controls_) return;
+  controls_ = controls;
   apart_s_ = no_wrench(displayed) && no_wrench(computed) ? apart_s_ + dt : 0;
   if (apart_s_ > kEpisodeGap_s) {
     tdpa_.forget_credit();
@@ -70,8 +70,17 @@ void ForceStage::observe_tdpa(const Wrench& displayed, const Wrench& computed, c
   }
   if (!(span_s > 0)) return;
   motion_ = motion, motion_s_ = span_s;
-  tdpa_.observe(work_J(displayed, motion, span_s));
+  if (controls_) tdpa_.observe(work_J(displayed, motion, span_s));
   released_J_ += std::max(0.0, work_J(computed, motion, span_s));
+}
+
+// As in Renderer::command: while touch fades or returns, an amplified or predicted force stays within its share of the limits.
+void ForceStage::limit_to_share(sync::ForceSample& shown, double share) const {
+  const double force_N = shown.force_N.norm(), torque_N_m = shown.torque_N_m.norm();
+  const double kept = std::min({1.0, share * limits_.force_N / std::max(force_N, 1e-12), share * limits_.torque_N_m / std::max(torque_N_m, 1e-12)});
+  shown.force_N *= kept;
+  shown.torque_N_m *= kept;
+  shown.transient_N *= kept;
 }
 
 // The motion until the device applies the next force, if the hand continues as it moved last.
@@ -85,9 +94,10 @@ Wrench ForceStage::display(const Wrench& wanted, const Wrench& reaction, const E
   const bool valid = wanted.force_N.allFinite() && wanted.torque_N_m.allFinite() && transient_N.allFinite() && share > 0;
   const double held_s = motion.loop.immediate() ? dt : std::max(dt, motion.loop.period_s);
   const DeviceMotion during = expected_motion(held_s);
-  const double energy_J = controls_ ? released_J_ + TimeDomainPassivity::given_J(reaction, during, held_s) : 0;
+  const double energy_J = released_J_ + TimeDomainPassivity::given_J(reaction, during, held_s);
+  const double speed_m_s = motion_s_ > 0 && motion_.moved_m.allFinite() ? motion_.moved_m.norm() / motion_s_ : 0;
   const sync::ForceSample sample =
-      valid ? sync::ForceSample{wanted.force_N, wanted.torque_N_m, transient_N, share, energy_J} : sync::ForceSample{};
+      valid ? sync::ForceSample{wanted.force_N, wanted.torque_N_m, transient_N, share, energy_J, speed_m_s} : sync::ForceSample{};
   sync::ForceSample shown = signal_.step(now_, world_, sample, *operators_, decisions_);
   // A force from before a loss must not outlive it.
   const double kept = std::clamp(share / shown.share, 0.0, 1.0);
@@ -95,6 +105,7 @@ Wrench ForceStage::display(const Wrench& wanted, const Wrench& reaction, const E
   shown.torque_N_m *= kept;
   shown.transient_N *= kept;
   const bool same = shown.force_N == sample.force_N && shown.torque_N_m == sample.torque_N_m;
+  if (!same && share < 1) limit_to_share(shown, share);
   same_ = same_ && same;
   Wrench passive{shown.force_N, shown.torque_N_m};
   if (controls_ && !same_) passive = tdpa_.control(passive, during, held_s, shown.energy_J);

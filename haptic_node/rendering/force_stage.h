@@ -66,10 +66,12 @@ class ForceStage {
  private:
   void observe_tdpa(const Wrench& displayed, const Wrench& computed, const DeviceMotion& motion, double span_s, double dt);
   DeviceMotion expected_motion(double held_s) const;
+  void limit_to_share(sync::ForceSample& shown, double share) const;
 
   std::optional<Safety> reaction_;  // of the bodies; nothing: the stage is not active
   ForceHistory reaction_commands_;
   sync::StageSignal signal_;
+  SafetyLimits limits_;
   InjectedEnergy injected_;
   // The two ends of the channel of passivity="tdpa".
   TimeDomainPassivity tdpa_;

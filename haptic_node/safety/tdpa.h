@@ -20,6 +20,11 @@ class TimeDomainPassivity {
   static constexpr double kMinSpeed_m_s = 0.001;
 
   void reset() { *this = TimeDomainPassivity(); }
+  // Begins to control. promised_J: sum of the energy that packets from before may report, which gives no credit.
+  void begin(double promised_J) {
+    reset();
+    out_J_ = received_J_ = promised_J;
+  }
   // Energy that a wrench gives to the hand during a motion, J, >= 0: force and torque apart, so that energy from a turning
   // hand does not pay for the force of the same tick.
   static double given_J(const Wrench& wrench, const DeviceMotion& during, double held_s);

@@ -39,7 +39,7 @@ class ObserverBody : public PlayerBody {
     const sync::HostTime start = start_.value_or(tick.now);
     const auto picture = presented_.picture(tick.now, start);
     const auto sounds = presented_.sounds(tick.now, start);
-    const Eigen::Vector3d felt_N = presented_.felt_N(tick.now, tick.force_N);
+    const Eigen::Vector3d felt_N = presented_.felt_N(tick.now, tick.force_N, arm_.velocity_m_s().norm());
     if (!player_) return;
     const bool runs = tick.has_scene && !tick.in_setup;
     if (runs && !std::exchange(began_, true))

@@ -65,10 +65,11 @@ Percept Perception::perceive(sync::HostTime now) {
   return percept;
 }
 
-Eigen::Vector3d Perception::felt_N(sync::HostTime now, const Eigen::Vector3d& force_N) {
+Eigen::Vector3d Perception::felt_N(sync::HostTime now, const Eigen::Vector3d& force_N, double speed_m_s) {
   const auto map = bodies_.map(now);
   sync::ForceSample sample;
   sample.force_N = force_N;
+  sample.speed_m_s = speed_m_s;
   const Eigen::Vector3d felt =
       touch_.step(now, map ? map->to_sim(now) : sync::SimTime{}, sample, percept_.operators, &percept_.decisions).force_N;
   hand_.publish(now);

@@ -28,9 +28,10 @@ class Perception {
   void set_scene(const scene_t& scene);
   // Call it once a tick. Sight and hearing at `now`; the caller adds the hand and the force on it.
   Percept perceive(sync::HostTime now);
-  // Once a tick, after perceive(): the force that the participant perceives while the device exerts force_N on the hand, N. The
+  // Once a tick, after perceive(): the force that the participant perceives while the device exerts force_N on the hand, N, which
+  // moves at speed_m_s. The
   // stage `percept` of a profile changes it; the arm moves under force_N itself.
-  Eigen::Vector3d felt_N(sync::HostTime now, const Eigen::Vector3d& force_N);
+  Eigen::Vector3d felt_N(sync::HostTime now, const Eigen::Vector3d& force_N, double speed_m_s);
 
  private:
   // True when a node renders that modality, or did so a moment ago.

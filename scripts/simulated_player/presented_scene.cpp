@@ -160,10 +160,11 @@ std::vector<Sound> PresentedScene::sounds(sync::HostTime now, sync::HostTime sta
   return presented;
 }
 
-Vector3d PresentedScene::felt_N(sync::HostTime now, const Vector3d& force_N) {
+Vector3d PresentedScene::felt_N(sync::HostTime now, const Vector3d& force_N, double speed_m_s) {
   const auto map = bodies_.map(now);
   sync::ForceSample sample;
   sample.force_N = force_N;
+  sample.speed_m_s = speed_m_s;
   const Vector3d felt = touch_.step(now, map ? map->to_sim(now) : sync::SimTime{}, sample, percept_.operators, &percept_.decisions).force_N;
   hand_.publish(now);
   return felt;

@@ -35,8 +35,8 @@ class PresentedScene {
   void receive(sync::HostTime now);
   std::optional<Picture> picture(sync::HostTime now, sync::HostTime start);
   std::vector<Sound> sounds(sync::HostTime now, sync::HostTime start);
-  // The force that the participant perceives while the device exerts force_N, N.
-  Eigen::Vector3d felt_N(sync::HostTime now, const Eigen::Vector3d& force_N);
+  // The force that the participant perceives while the device exerts force_N, N, on the hand, which moves at speed_m_s.
+  Eigen::Vector3d felt_N(sync::HostTime now, const Eigen::Vector3d& force_N, double speed_m_s);
   // Area, px, that the newest picture would show of a ball at this place; 0 before the first scene.
   double visible_px(std::size_t goal, const Eigen::Vector3d& at_m) const;
   // The delays of pictures and sounds now, beyond the instant of the world: for practice.

@@ -14,7 +14,7 @@ class StageModelBody : public PlayerBody {
   void set_scene(const scene_t& scene) override { perception_.set_scene(scene); }
   void step(const Tick& tick) override {
     Percept percept = perception_.perceive(tick.now);
-    percept.force_N = perception_.felt_N(tick.now, tick.force_N);
+    percept.force_N = perception_.felt_N(tick.now, tick.force_N, arm_.velocity_m_s().norm());
     percept.hand_m = arm_.position_m();
     if (tick.in_setup)
       percept.balls_m.assign(balls_, std::nullopt);  // sight is off before the game begins

@@ -71,6 +71,8 @@ class Deadband {
   // Returns true when the snapshot must be sent: a signal left its band, appeared or disappeared, or the last update is too old.
   // speed_m_s: of the moving object, for the adaptive form.
   bool send(SimTime t, std::span<const Signal> signals, double speed_m_s);
+  // True after the first update, which is always sent.
+  bool has_sent() const { return started_; }
 
  private:
   struct Memory {

@@ -189,17 +189,22 @@ class DegradedSnapshots {
   }
 
   // Records the motion of a sent message; gives a suppressed one the motion of the receiver, and a release as late as that of a
-  // sent one.
+  // sent one and not before that of the sent message that the motion follows from.
   void follow_motion(Message& m, Decision& decision, const OperatorChain& operators) {
     const SimTime t = std::max(sim_time(m.header.sim_time_ns), decision.paced);
     if (motions_.size() >= kStreams && !motions_.contains(stream_of(m))) motions_.clear();
     const DeadbandDef* const deadband = operators.deadband(t);
     if (!deadband) return void(motions_.erase(stream_of(m)));
-    MotionCodec& motion = motions_[stream_of(m)];
-    if (!decision.dropped()) return motion.add(t, m, *deadband);
-    if (decision.why != DropReason::kDeadband || !motion.reconstruct(t, m)) return;
+    SentMotion& sent = motions_[stream_of(m)];
+    // The sender begins without a line, too: under a new profile.
+    if (decision.begins_prediction) sent = {};
+    if (!decision.dropped()) {
+      sent.release = decision.release + decision.shift;
+      return sent.motion.add(t, m, *deadband);
+    }
+    if (decision.why != DropReason::kDeadband || !sent.motion.reconstruct(t, m)) return;
     decision.why = DropReason::kKept;
-    decision.release += operators.constant_delay(t) - operators.presentation_delay(t);
+    decision.release = std::max(decision.release + operators.constant_delay(t) - operators.presentation_delay(t), sent.release);
   }
 
   // True for a snapshot that a newer one of its stream has overtaken, if the order must be kept. WORLD_STATE contains only
@@ -310,7 +315,11 @@ class DegradedSnapshots {
   Decisions overtaken_;
   std::uint64_t order_ = 0;
   bool presents_on_release_ = false, keeps_stamps_ = false, reconstructs_motion_ = false;
-  std::map<std::uint64_t, MotionCodec> motions_;  // by stream
+  struct SentMotion {
+    MotionCodec motion;
+    HostTime release{};  // of the newest sent message
+  };
+  std::map<std::uint64_t, SentMotion> motions_;  // by stream
   std::int64_t incarnation_ = 0, newest_publish_ns_ = 0;
   HostTime newest_arrival_{};
   sim_clock_t newest_clock_{};

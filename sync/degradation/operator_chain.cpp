@@ -110,8 +110,10 @@ bool OperatorChain::drops(Active& a, Chain& chain, const StreamItem& item, Decis
   if (rule.freeze) return drop(DropReason::kFreeze, *rule.freeze);
   if (rule.rate && !item.is_event && thinned(*rule.rate, chain, item)) return drop(DropReason::kRate, Conceal::kHold);
   const bool compared = rule.deadband && (item.has_forces || rule.deadband->quantity != Quantity::kForce);
-  if (compared && !item.is_event && !chain.deadband->send(std::max(item.time, item.paced), item.signals, item.speed_m_s))
-    return drop(DropReason::kDeadband, Conceal::kHold);
+  if (compared && !item.is_event) {
+    decision.begins_prediction = !chain.deadband->has_sent();
+    if (!chain.deadband->send(std::max(item.time, item.paced), item.signals, item.speed_m_s)) return drop(DropReason::kDeadband, Conceal::kHold);
+  }
   if (chain.loss && chain.loss->lose(uniform(mixed(a.seed, kLossDraw), item.key)))
     return drop(DropReason::kLoss, rule.conceal);
   return false;

@@ -48,6 +48,8 @@ struct Decision {
   bool duplicated = false;
   bool in_order = false;   // delayed by a jitter that keeps the order
   bool reordered = false;  // held back by a reorder
+  // The first update of the last deadband, also when it is lost later: a receiver that predicts forgets the updates before it.
+  bool begins_prediction = false;
   bool evaluated = false;  // an operator was evaluated, so the decision is logged
   bool dropped() const { return why != DropReason::kKept; }
   // True for a snapshot that must not be released after a newer one.
@@ -65,6 +67,7 @@ struct ForceSample {
   Eigen::Vector3d transient_N = Eigen::Vector3d::Zero();  // part of force_N that is due to hits
   double share = 1;  // factor that its sender has already applied, above 0; not changed by operators
   double energy_J = 0;  // energy that its sender has released so far, a sum; not changed by operators
+  double speed_m_s = 0;  // of the hand, for a deadband that widens with it; not changed by operators
   friend bool operator==(const ForceSample&, const ForceSample&) = default;
 };
 

@@ -107,6 +107,12 @@ void check_attribute(const std::array<const char*, kCount>& valid, const StageDe
   throw std::invalid_argument("the stage " + stage.name + " has no " + name + "; choose from " + choices);
 }
 
+// A value that ends changes by as much as itself: a wider band would hold it, or the motion, for ever.
+void check_band(const Rule& rule) {
+  if (rule.deadband && rule.deadband->fraction >= 1 && rule.deadband->resend_s <= 0)
+    throw std::invalid_argument("deadband: with 100 % or more the end of a force or a motion is never sent; give less, or resend=");
+}
+
 // A signal of a stage is a force, and its newest sample counts.
 void check_signal(const Rule& rule, const StageDef& stage) {
   const auto check = [&](const char* name, const auto& given) {
@@ -160,6 +166,7 @@ void check_stage(Rule& rule, const Element& e) {
     : stage->kind == StageKind::kDisplay ? check_attribute(kOfDisplay, *stage, a->Name())
                                          : check_attribute(kOfSignal, *stage, a->Name());
   stage->kind == StageKind::kMessages ? check_messages(rule, *stage) : check_signal(rule, *stage);
+  check_band(rule);
   const double delay_s = (rule.delay ? rule.delay->delay_s : 0) + (rule.jitter ? needed_delay_s(*rule.jitter) : 0);
   if (stage->max_delay_s > 0 && delay_s > stage->max_delay_s)
     throw std::invalid_argument("delay and jitter of the stage " + stage->name + " add up to more than " +

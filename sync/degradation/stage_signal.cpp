@@ -53,13 +53,15 @@ const ForceSample& StageSignal::step(HostTime now, SimTime world, const ForceSam
                         .arrival = now,
                         .publish_ns = to_ns(now),
                         .paced = world,
-                        .signals = {}};
+                        .signals = {},
+                        .speed_m_s = sample.speed_m_s};
   PendingSample next{now, sample};
   Decision decision = operators.decide(item, next.sample);
   const DeadbandDef* const deadband = operators.deadband(world);
   const bool predicts = deadband && deadband->predictor == Predictor::kLinear;
   bool predicted = false;
-  if (!predicts) receiver_ = {};
+  // The sender begins without a line, too: under a new profile, and after a restart of the world.
+  if (!predicts || decision.begins_prediction) receiver_ = {};
   if (!decision.dropped()) {
     decision.release = std::max(now, decision.release + decision.shift + operators.presentation_delay(world));
     decision.shift = Nanoseconds(0);

@@ -107,6 +107,14 @@ def open_own(path):
     return descriptor
 
 
+def is_regular(path):
+    """True for a regular file; False for anything else, also for a name that is too long."""
+    try:
+        return stat.S_ISREG(os.stat(path).st_mode)
+    except (OSError, ValueError):
+        return False
+
+
 def open_regular(path):
     """A regular file of any user, open for reading as bytes. A named pipe or a device, which may never end, is refused. Raises OSError."""
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)

@@ -1,4 +1,4 @@
-"""XML files of the user: studies, tasks and experiments. Reads one without entities, network access or large amounts of memory."""
+"""XML files of the user: studies, tasks, experiments and clusters. Reads one without entities, network access or large amounts of memory."""
 from tactus import own_files
 from tactus.refusal import Refusal
 from tactus.tables import decoded
@@ -6,19 +6,20 @@ from tactus.tables import decoded
 LARGEST_BYTES = 1_000_000
 
 
-def root_of(path, text, kind, shipped):
+def root_of(path, text, kind, shipped=(), largest_bytes=LARGEST_BYTES, keeps_comments=False):
     """(root element, bytes) of the file at `path`. text: the file as the user named it, for messages; kind: "a study file", for example; shipped: names of
-    the shipped files of this kind. Raises Refusal with the line."""
+    the shipped files of this kind; keeps_comments: for a file that is written again. Raises Refusal with the line."""
     from lxml import etree  # slow to import
+    shipped = ", ".join(shipped)
     try:
-        data = own_files.read_regular(path, LARGEST_BYTES)
+        data = own_files.read_regular(path, largest_bytes)
     except OSError as error:
-        raise Refusal(f"{text}: cannot be read ({error.strerror}); give {kind}, or one of {', '.join(shipped)}") from None
-    if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; give {kind}")
+        raise Refusal(f"{text}: cannot be read ({error.strerror}); give {kind}" + (f", or one of {shipped}" if shipped else "")) from None
+    if len(data) > largest_bytes:
+        raise Refusal(f"{text}: is longer than {largest_bytes} bytes; give {kind}")
     decoded(data, text)
     try:
-        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True))
+        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=not keeps_comments, remove_pis=not keeps_comments))
     except etree.XMLSyntaxError as error:
         raise Refusal(f"{text}:{error.lineno}: {error.msg.splitlines()[0]}") from None
     except ValueError as error:

@@ -23,15 +23,15 @@ sync::OperatorChain codec_operators(const std::string& attributes) {
 }
 
 struct CodecLoop {
-  // Largest energy that the hand received beyond that of the packets that had arrived (promised), apart from that below the least
-  // speed of the controller (slow); sum of the energy that the hand received because it moved further along a force than in the tick
-  // before (unexpected); and energy beyond the most work of the computed force (injected).
+  // Largest energy that the hand received beyond that of the packets that had arrived (promised), from the begin of the control on,
+  // apart from that below the least speed of the controller (slow); sum of the energy that the hand received because it moved further
+  // along a force than in the tick before (unexpected); and energy beyond the most work of the computed force (injected).
   double beyond_promise_J = 0, slow_J = 0, unexpected_J = 0, injected_J = 0, received_J = 0, peak_N = 0, rise_N = 0;
   std::vector<double> force_N;
 };
 
 CodecLoop run_codec(const std::string& attributes, int delay_ms, const HandImpedance& impedance, double stiffness_N_m,
-                    const Settings& s, double mass_kg = 0) {
+                    const Settings& s, double mass_kg = 0, int controls_from_ms = 0) {
   VirtualHand hand(MonotoneCubic({0, 0.3, 1.2, 1.4, 2.2, 2.5, 4}, {place(0.02), place(-0.004), place(-0.004), place(0.012),
                                                                    place(-0.006), place(0.02), place(0.02)},
                                  MonotoneCubic::Ends::kRest),
@@ -43,9 +43,13 @@ CodecLoop run_codec(const std::string& attributes, int delay_ms, const HandImped
   CodecLoop run;
   Vector3d last = hand.read(host_ms(0)).position, force = Vector3d::Zero();
   double moved_before = 0, computed_N = 0, displayed_J = 0, computed_J = 0, max_J = 0, apart_s = 0;
-  double released_J = 0;
+  double released_J = 0, released_before_J = 0;  // of the computed force; until the control begins
   std::vector<double> promised_J;  // in the packet of each tick: released, and expected in the coming tick
   for (int ms = 0; ms < 4000; ++ms) {
+    if (ms == controls_from_ms) {
+      run.received_J = run.slow_J = run.unexpected_J = run.beyond_promise_J = 0;
+      released_before_J = released_J;
+    }
     const DeviceState state = hand.read(host_ms(ms));
     const double moved = state.position.z() - last.z();
     last = state.position;
@@ -60,7 +64,7 @@ CodecLoop run_codec(const std::string& attributes, int delay_ms, const HandImped
     run.injected_J = std::max(run.injected_J, displayed_J - max_J);
     const int packet = ms - 1 - delay_ms;  // the newest at the tick before, whose force has acted
     const double promise_J = packet < 0 ? 0 : promised_J[static_cast<std::size_t>(packet)];
-    run.beyond_promise_J = std::max(run.beyond_promise_J, run.received_J - run.slow_J - promise_J);
+    run.beyond_promise_J = std::max(run.beyond_promise_J, run.received_J - run.slow_J - std::max(0.0, promise_J - released_before_J));
     const touch_model_t m = world.model_at(ms);
     TickInput in;
     in.force_stage = &operators;
@@ -109,6 +113,18 @@ TEST_CASE("With TDPA a delayed force gives the hand at most the energy that its 
   }
   CHECK(max_mJ[0] < max_mJ[1] / 20);
   if (std::getenv("TACTUS_PRINT")) WARN("largest energy beyond the promise: " << max_mJ[0] << " mJ with TDPA, " << max_mJ[1] << " mJ without");
+}
+
+TEST_CASE("When TDPA begins again, packets from before promise nothing") {
+  Settings s;
+  s.generated_limit_J = 0.01;  // so that this controller acts before that of the display
+  const auto rule = [](const char* when) { return std::string("passivity=\"tdpa\" ") + when; };
+  // Controlled until the hand leaves the wall the first time, and again while it leaves it the second time.
+  const std::string operators = "delay=\"60ms\"/><degrade modality=\"haptic\" stage=\"force\" " + rule("until=\"2.2s\"") +
+                                "/><degrade modality=\"haptic\" stage=\"force\" " + rule("from=\"2.25s\"");
+  const CodecLoop run = run_codec(operators, 60, {0.2, 6, 300}, 1500, s, 0, 2250);
+  CHECK(run.received_J > 1e-4);
+  CHECK(run.beyond_promise_J <= run.unexpected_J + 1e-9);
 }
 
 TEST_CASE("TDPA changes no force that is displayed as computed, to the bit") {

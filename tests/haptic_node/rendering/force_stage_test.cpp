@@ -9,6 +9,7 @@
 #include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/valid.h"
 #include "tests/haptic_node/support/episode_world.h"
+#include "tests/haptic_node/support/trial.h"
 #include "tests/haptic_node/support/world.h"
 
 using namespace tactus;
@@ -86,21 +87,6 @@ ScriptedRun run_scripted(const std::string& attributes, unsigned seed, bool ever
   return run;
 }
 
-// Operators of the stage with random values.
-std::string random_operators(std::mt19937& random) {
-  const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-  std::string text;
-  if (draw(0, 1) < 0.7) text += " delay=\"" + std::to_string(draw(0, 150)) + "ms\"";
-  if (draw(0, 1) < 0.3) text += " loss=\"" + std::to_string(draw(0, 60)) + "%\"";
-  if (draw(0, 1) < 0.3) text += " rate=\"" + std::to_string(draw(10, 500)) + "Hz\"";
-  if (draw(0, 1) < 0.3) text += " quantise=\"" + std::to_string(draw(0.05, 2)) + "N\"";
-  if (draw(0, 1) < 0.3) text += " gain=\"" + std::to_string(draw(-2, 3)) + "\"";
-  if (draw(0, 1) < 0.3) text += " lowpass=\"" + std::to_string(draw(1, 200)) + "Hz\"";
-  if (draw(0, 1) < 0.1) text += " freeze=\"hold\" from=\"1s\"";
-  if (text.empty()) text = " off=\"true\"";
-  return text;
-}
-
 struct ClosedRun {
   // beyond_J: injected energy above the energy that the free damping of the device has dissipated.
   double injected_J = 0, beyond_J = 0, reported_J = 0, energy_J = 0, peak_N = 0, rise_N = 0;
@@ -159,7 +145,7 @@ TEST_CASE("With a scripted hand no operator of the stage force changes what the 
   for (unsigned seed = 0; seed < 12; ++seed) {
     const double mass_kg = seed % 3 == 0 ? 0 : 0.1 * seed;
     const auto reference = run_scripted("", seed, false, mass_kg).bytes;
-    const std::string operators = random_operators(random);
+    const std::string operators = random_force_operators(random);
     INFO(operators);
     REQUIRE(run_scripted(operators, seed, false, mass_kg).bytes == reference);
   }
@@ -208,7 +194,7 @@ TEST_CASE("The energy that a late force injects is reported and at most the allo
     s.device_damping_Ns_m = trial / 2 % 2 ? draw(0.5, 2) : draw(2, 20);
     s.device_mass_kg = draw(0.05, 0.3);
     const HandImpedance hand{s.device_mass_kg * draw(1, 4), s.device_damping_Ns_m * draw(1, 10), draw(50, 800)};
-    const std::string operators = random_operators(random);
+    const std::string operators = random_force_operators(random);
     const double mass_kg = trial / 2 % 3 == 0 ? draw(0.05, 1) : 0;
     const ClosedRun run = run_closed(operators, hand, draw(200, 2000), s, mass_kg);
     INFO(operators << ", hand " << hand.mass_kg << " kg " << hand.damping_N_s_m << " N s/m " << hand.stiffness_N_m << " N/m, body "
@@ -261,6 +247,23 @@ TEST_CASE("A late force fades with the touch model and does not outlive it") {
     const TickOutput& out = bench.staged(ms, device, nullptr);
     if (ms <= 1050) CHECK(out.force_N.z() > 1.9);
     if (ms > 1071) CHECK(out.force_N.norm() == 0);
+  }
+}
+
+TEST_CASE("While touch fades and returns an amplified or predicted force stays within its share of the limit") {
+  const Settings s;
+  for (const char* operators : {"gain=\"50\"", "gain=\"-50\"", "gain=\"8\" delay=\"5ms\"", "gain=\"20\" deadband=\"5% force predict=linear\"", "quantise=\"8N\""}) {
+    StagedBench bench(operators);
+    INFO(operators);
+    double max_N = 0;
+    for (int ms = 0; ms <= 800; ++ms) {
+      const bool lost = ms > 200 && ms < 500;
+      const auto m = model(ms, {plane(7, Vector3d::Zero(), Vector3d::UnitZ())});
+      const TickOutput& out = bench.staged(ms, {0, 0, -0.001}, lost ? nullptr : &m);
+      REQUIRE(out.force_N.norm() <= s.force_limit_N * out.state.fade + 1e-6);
+      max_N = std::max(max_N, out.force_N.norm());
+    }
+    CHECK(max_N > 1);
   }
 }
 

@@ -33,6 +33,31 @@ double max_generated_mJ(const TrialDef& def) { return 1e3 * def.settings.generat
 
 }  // namespace
 
+std::string random_force_operators(std::mt19937& random) {
+  std::ostringstream text;
+  const auto chance = [&](double p) { return draw(random, 0, 1) < p; };
+  if (chance(0.7)) {
+    const double delay_ms = draw(random, 0, 150);
+    text << " delay=\"" << delay_ms << "ms\"";
+    if (chance(0.3)) text << " jitter=\"" << draw(random, 0, 0.9) * delay_ms << "ms uniform\"";
+  }
+  if (chance(0.3)) text << " loss=\"" << draw(random, 0, 40) << "% burst=" << draw(random, 1, 20) << (chance(0.3) ? "\" conceal=\"zero\"" : "\"");
+  if (chance(0.3)) text << " rate=\"" << draw(random, 10, 500) << "Hz\"";
+  if (chance(0.3)) text << " quantise=\"" << draw(random, 0.05, 2) << "N\"";
+  if (chance(0.3)) text << " gain=\"" << draw(random, 0, 5) - 2 << "\"";
+  if (chance(0.3)) text << " lowpass=\"" << draw(random, 1, 200) << "Hz\"";
+  if (chance(0.5)) {
+    text << " deadband=\"" << draw(random, 0, 90) << "% force" << (chance(0.5) ? " predict=linear" : "");
+    if (chance(0.3)) text << " floor=" << draw(random, 0, 2) << "N";
+    if (chance(0.3)) text << " adaptive=" << draw(random, 0, 5) << "s/m";
+    if (chance(0.3)) text << " resend=" << draw(random, 1, 200) << "ms";
+    text << "\"";
+  }
+  if (chance(0.4)) text << " passivity=\"tdpa\"";
+  if (chance(0.1)) text << " freeze=\"hold\" from=\"0.5s\"";
+  return text.str().empty() ? " off=\"true\"" : text.str();
+}
+
 TrialDef random_trial(std::mt19937& random) {
   TrialDef d;
   // All settings, or a few beside their defaults.
@@ -57,6 +82,7 @@ TrialDef random_trial(std::mt19937& random) {
   d.failure = static_cast<Failure>(random() % kFailures);
   d.failure_s = draw(random, 0.2, 0.9);
   d.stall_s = d.failure == Failure::kStall ? draw(random, 0.001, 0.4) : 0;
+  if (random() % 2) d.force_operators = random_force_operators(random);
   if (d.mass_kg > 0) return d;
   if (random() % 2) d.margin_late_m = 0.1;
   // Flat enough that the energy of the relief itself is below 0.1 mJ: a slope of 0.08.
@@ -77,10 +103,12 @@ std::string faults(const TrialDef& def, const TrialResult& r) {
   require(r.beyond_rise_N <= kRounding_N + 2e-9 * def.settings.slew_limit_N_s, "slew limit");
   require(r.beyond_fade_N <= kRounding_N, "fade");
   if (def.failure != Failure::kNone) return list;
+  const bool staged = !def.force_operators.empty();
+  if (staged && !def.hits) require(r.injected_mJ <= max_generated_mJ(def), "injected energy");
   // One percent, and the rest of a tick and of a transient.
   const double reaction_N_s = 0.01 * r.received_N_s + 1e-4;
   // Coarse steps do not render the small force that returns the impulse of a transient.
-  if (def.force_step_N == 0 && r.rung_down)
+  if (def.force_step_N == 0 && r.rung_down && !staged)
     require(std::abs(r.hand_N_s - r.constraint_N_s) <= reaction_N_s, "reaction of the hand");
   if (def.mass_kg > 0) require(std::abs(r.body_N_s + r.constraint_N_s) <= reaction_N_s, "reaction of the body");
   return list;
@@ -97,7 +125,7 @@ std::string describe(const TrialDef& def) {
   }
   out << "| hand " << def.hand.mass_kg << " kg " << def.hand.damping_N_s_m << " N s/m " << def.hand.stiffness_N_m
       << " N/m, body " << def.mass_kg << " kg, " << def.stiffness_N_m << " N/m, delay " << def.delay_ms << " ms, margin "
-      << def.margin_m << " m and " << def.margin_late_m << " m, relief " << def.relief_m << " m, force_step " << def.force_step_N << " N, hits " << def.hits << ", tap " << def.period_s
+      << def.margin_m << " m and " << def.margin_late_m << " m, relief " << def.relief_m << " m, force_step " << def.force_step_N << " N, stage force" << def.force_operators << ", hits " << def.hits << ", tap " << def.period_s
       << " s " << def.hold_s << " s " << def.depth_m << " m " << def.top_m << " m, failure "
       << static_cast<int>(def.failure) << " at " << def.failure_s << " s, stall " << def.stall_s << " s";
   return out.str();
@@ -105,7 +133,7 @@ std::string describe(const TrialDef& def) {
 
 std::string describe(const TrialResult& r) {
   std::ostringstream out;
-  out << "generated " << r.generated_mJ << " mJ, observed " << r.observed_mJ << " mJ, energy " << r.energy_mJ
+  out << "generated " << r.generated_mJ << " mJ, observed " << r.observed_mJ << " mJ, injected " << r.injected_mJ << " mJ, energy " << r.energy_mJ
       << " mJ, impulses of hand, constraint and body " << r.hand_N_s << ", " << r.constraint_N_s << ", " << r.body_N_s
       << " N s, peak " << r.peak_N << " N, beyond force " << r.beyond_force_N << " rise " << r.beyond_rise_N << " fade "
       << r.beyond_fade_N << " N, least coupling " << r.least_coupling;

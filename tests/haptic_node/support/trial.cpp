@@ -11,6 +11,7 @@
 #include <tactus/touch_model_t.hpp>
 #include <tactus/touch_plane_t.hpp>
 
+#include "sync/degradation/operator_chain.h"
 #include "sync/resampling/sample_status.h"
 #include "tests/haptic_node/support/waves.h"
 #include "tests/haptic_node/support/world.h"
@@ -46,6 +47,12 @@ MonotoneCubic path_of(const TrialDef& d) {
   return {times, places, MonotoneCubic::Ends::kRest};
 }
 
+sync::OperatorChain operators_of(const TrialDef& d) {
+  if (d.force_operators.empty()) return {};
+  const std::string rule = "<degrade modality=\"haptic\" stage=\"force\" " + d.force_operators + "/>";
+  return {sync::parse_profile("<profile seed=\"3\">" + rule + "</profile>", "p.xml"), "haptic", {}, "force"};
+}
+
 class Trial {
  public:
   explicit Trial(const TrialDef& def)
@@ -53,6 +60,7 @@ class Trial {
         scene_(scene(kTool_m)),
         safety_(safety_limits(def.settings)),
         renderer_(scene_, 0, def.settings, safety_),
+        operators_(operators_of(def)),
         hand_(path_of(def), false, def.hand) {
     hand_.begin(host_ms(0));
     if (def.relief_m > 0) renderer_.set_maps(waves(def.relief_m));
@@ -160,6 +168,7 @@ class Trial {
     in.map = sync::TimeMap{sync::sim_time(0), host_ms(stepped ? -1000 : 0), 1};
     in.touch_delay = sync::Nanoseconds(def_.delay_ms * kMs);
     in.force_step_N = def_.force_step_N;
+    if (!operators_.empty()) in.force_stage = &operators_;
     in.restarted = def_.failure == Failure::kRestart && t >= def_.failure_s && !restarted_;
     restarted_ = restarted_ || in.restarted;
     const auto events = hits(t, z);
@@ -176,10 +185,11 @@ class Trial {
       const bool gap = t - tick_s_ > sync::to_seconds(Device::kWatchdog);
       const double held_s = std::min(t - tick_s_, sync::to_seconds(Device::kWatchdog));
       if (!gap) hand_J_ += constraint_N_ * (z - z_hand_);
+      if (!gap) measure_injected(z - z_hand_, t - tick_s_);
       impulse_N_s_ += constraint_N_ * held_s;
       r_.constraint_N_s += constraint_N_ * held_s;
       r_.hand_N_s += force_N_ * held_s;
-      r_.received_N_s += std::abs(force_N_) * held_s;
+      r_.received_N_s += std::max(std::abs(force_N_), std::abs(constraint_N_)) * held_s;
       speed_m_s_ = (z - z_hand_) / (t - tick_s_);
     }
     begun_ = true;
@@ -200,6 +210,15 @@ class Trial {
     }
     r_.energy_mJ = 1e3 * hand_J_;
     r_.body_N_s = body_N_s_;
+  }
+  // Energy that the stage `force` adds: with transients, and without the part that the damping of the device dissipates.
+  void measure_injected(double moved_m, double dt) {
+    silent_s_ = force_N_ == 0 && constraint_N_ == 0 ? silent_s_ + dt : 0;
+    if (silent_s_ > kApart_s) displayed_J_ = computed_J_ = max_computed_J_ = 0;
+    displayed_J_ += force_N_ * moved_m - def_.settings.device_damping_Ns_m * moved_m * moved_m / dt;
+    computed_J_ += constraint_N_ * moved_m;
+    max_computed_J_ = std::max(max_computed_J_, computed_J_);
+    r_.injected_mJ = std::max(r_.injected_mJ, 1e3 * (displayed_J_ - max_computed_J_));
   }
   // Touch begins or returns: the hand may then be inside, without having done work.
   bool restarts_at(double t) const {
@@ -227,6 +246,10 @@ class Trial {
     if (out.state.touch_status >= static_cast<std::int8_t>(sync::SampleStatus::kHeld)) late_until_s_ = t + 1;
     force_N_ = force;
     constraint_N_ = force - out.state.transient_N.z;
+    if (!operators_.empty()) {
+      constraint_N_ = 0;
+      for (const tool_constraint_t& c : out.state.constraints) constraint_N_ += c.force_N.z;
+    }
     judged_s_ = t;
     const double before_m = proxy_z_;
     proxy_z_ = out.state.proxy.position_m.z;
@@ -274,6 +297,7 @@ class Trial {
   scene_t scene_;
   Safety safety_;
   Renderer renderer_;
+  sync::OperatorChain operators_;
   VirtualHand hand_;
   TrialResult r_;
   std::deque<std::pair<double, touch_model_t>> way_;
@@ -286,6 +310,7 @@ class Trial {
   double tick_s_ = 0, judged_s_ = 0, apart_from_s_ = 0, impulse_N_s_ = 0;
   Vector3d last_force_N_ = Vector3d::Zero();
   double force_N_ = 0, constraint_N_ = 0, quiet_from_s_ = 0;
+  double displayed_J_ = 0, computed_J_ = 0, max_computed_J_ = 0, silent_s_ = 0;  // of measure_injected()
   double proxy_z_ = 1, proxy_speed_m_s_ = 0;
   double late_until_s_ = -1;  // the tool has rendered a late model shortly before
   bool begun_ = false, was_in_ = false, touched_ = false, stalled_ = false, restarted_ = false, lost_ = false, inside_ = false;

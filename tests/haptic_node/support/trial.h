@@ -33,6 +33,7 @@ struct TrialDef {
   double margin_m = 0, margin_s = 0, margin_late_m = 0;
   double relief_m = 0;  // height of the waves on the surface, 20 mm long
   double force_step_N = 0;
+  std::string force_operators;  // attributes of a rule of a profile at the stage `force`; empty: none
   bool hits = false;  // events of hits, which begin transients
   double period_s = 0.25, depth_m = 0.012, top_m = 0.032;  // of a tap
   double hold_s = 0.04;
@@ -45,6 +46,9 @@ struct TrialDef {
 struct TrialResult {
   double generated_mJ = 0;  // largest energy in an episode to hand and body, without transients
   double energy_mJ = 0;     // to the hand, in the whole trial, without transients
+  // Largest energy in an episode that the stage `force` has added to the most work of the computed force, without that which the
+  // damping of the device has dissipated.
+  double injected_mJ = 0;
   double observed_mJ = 0;   // the largest generated_J of the state
   double hand_N_s = 0, constraint_N_s = 0, body_N_s = 0;  // impulses along the normal, towards hand and body
   bool rung_down = true;  // the last transient has ended, and its impulse has been returned
@@ -67,8 +71,11 @@ TrialDef metronome();
 TrialDef press();
 
 // Draws every setting of haptic_node within its range, on a logarithmic scale where the range allows, and a hand, a
-// surface, a delay and a failure. The hand has at least the mass, damping and inertia that the settings state.
+// surface, a delay, operators of the stage `force` and a failure. The hand has at least the mass, damping and inertia that the settings state.
 TrialDef random_trial(std::mt19937& random);
+
+// Attributes of a rule at the stage `force`, with random values.
+std::string random_force_operators(std::mt19937& random);
 
 // The limits that a trial passes, in words; empty: none.
 std::string faults(const TrialDef& def, const TrialResult& r);

@@ -93,6 +93,30 @@ class TaskFiles(unittest.TestCase):
         path.write_text("time_s,tool,host_s\n,0,1\n1,1,1\n", encoding="utf-8")
         with self.assertRaisesRegex(Refusal, "no row of the first tool"):
             touch.columns(path, "host_s")
+    def test_a_scene_outside_the_folder_of_the_task_is_refused(self):
+        (self.folder / "below").mkdir()
+        (self.folder / "below" / "scene.sdf").write_text(SCENE, encoding="utf-8")
+        self.assertEqual("scene.sdf", self.read(TASK.replace("scene.sdf", "below/scene.sdf")).scene.name)
+        for name in ("/etc/passwd", "../scene.sdf", "below/../../scene.sdf"):
+            with self.subTest(name), self.assertRaisesRegex(Refusal, "t.task.xml:1: the scene .* is outside the folder"):
+                self.read(TASK.replace("scene.sdf", name))
+        with self.assertRaisesRegex(Refusal, "there is no scene"):
+            self.read(TASK.replace("scene.sdf", "x" * 5000))
+
+    def test_a_hostile_scene_is_refused_with_one_sentence(self):
+        task = self.read(TASK)
+        for text, reason in ((b"<sdf/>", "has no <world>"), (b"<sdf", "scene.sdf:1: "), (b'<!DOCTYPE s [<!ENTITY a "' + b"a" * 1000 + b'">]><sdf>&a;</sdf>', "DOCTYPE"),
+                             (b"<a>" * 1000, "depth"), (b"\xff\xfe<", "UTF-16"), (b"<sdf>" + b" " * task_file.LARGEST_SCENE_BYTES, "is longer than")):
+            (self.folder / "scene.sdf").write_bytes(text)
+            with self.subTest(text[:20]), self.assertRaises(Refusal) as caught:
+                task_file.changed_scene(task.scene, ())
+            self.assertIn(reason, str(caught.exception))
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_a_vibration_has_its_frequency_at_any_rate_of_touch(self):
+        for rate in (500, 1000, 4000):
+            wave = np.sin(2 * np.pi * 120 * np.arange(rate // 4) / rate)
+            self.assertAlmostEqual(120, math.exp(touch.vibration_log(wave, 0.1, 1 / rate)), delta=3)
 
     def test_warnings_of_the_scene_are_found_in_the_output_of_a_run(self):
         self.assertTrue(rendering.WARNING.match('sim_node: /tmp/x/scene.sdf:6: /sdf/world[@name="w"]/wind is not supported and has no effect'))

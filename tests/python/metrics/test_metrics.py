@@ -181,6 +181,16 @@ class Runs(unittest.TestCase):
         found = of_run.metrics(self.run_folder("one"))
         self.assertEqual(list(found), ["onset_soa_ms", "injected_J", "generated_J"])
 
+
+    def test_the_packets_of_a_deadband_are_those_of_its_own_stage(self):
+        class Decisions:
+            def messages(self, _):
+                decision = lambda i, ms, why: {f"decisions[{i}].is_event": "0", f"decisions[{i}].drop_reason": str(why), f"decisions[{i}].time_ns": str(ms * 1_000_000)}
+                for ms in range(0, 1001):  # the stage model sends all updates, the stage force one in ten
+                    yield {"sender": "haptic_node", "modality": "haptic", "count": "1", **decision(0, ms, 0)}
+                    yield {"sender": "haptic_node", "modality": "haptic:force", "count": "1", **decision(0, ms, 0 if ms % 10 == 0 else 2)}
+        self.assertAlmostEqual(101.0, of_run.sent_per_s(Decisions()))
+
     def test_every_metric_has_unit_and_meaning(self):
         for unit, meaning, _ in of_run.MEANING.values():
             self.assertTrue(unit and meaning)
@@ -288,8 +298,8 @@ class Ranking(unittest.TestCase):
 
     def test_conditions_are_read_from_a_table_of_games(self):
         row = lambda modality, operator, level, success, second="": {"modality_degraded": modality, "operator": operator, "level": level, "success": success, "second_modality": second}
-        rows = [row("haptic", "delay", "40", "1"), row("haptic", "delay", "40", "0"), row("", "", "", "1"), row("haptic", "off", "", "0"), row("audio", "delay", "40", "1"),
-                row("visual", "rate", "5", "1", "haptic"), row("visual", "rate", "5", "")]
+        rows = [row("haptic", "delay", 40.0, 1), row("haptic", "delay", 40.0, 0), row("", "", None, 1), row("haptic", "off", None, 0), row("audio", "delay", 40.0, 1),
+                row("visual", "rate", 5.0, 1, "haptic"), row("visual", "rate", 5.0, None)]
         found = {(c["modality"], c["operator"], c["level"]): (c["won"], c["games"]) for c in ranking.conditions_of(rows)}
         self.assertEqual(found, {("haptic", "", 0): (1, 1), ("visual", "", 0): (1, 1), ("haptic", "delay", 40): (1, 2)})
 

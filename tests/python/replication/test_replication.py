@@ -177,6 +177,23 @@ class Verdicts(unittest.TestCase):
         self.assertEqual("fitted by hand", verdict.calibration(e, expectation(calibrated="fitted by hand"), {}))
 
 
+class Tables(unittest.TestCase):
+    def test_texts_of_a_file_are_no_formulas_and_no_cells_of_their_own(self):
+        row = main.Row(read(GOOD), expectation(quantity="=HYPERLINK(1) | x"), verdict.of_values(expectation(), [9.0, 11.0]), "")
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            main.write_table(folder, [row])
+            with open(folder / "replications.csv", encoding="utf-8", newline="") as file:
+                self.assertEqual("'=HYPERLINK(1) | x", next(csv.DictReader(file))["quantity"])
+            lines = (folder / "replications.md").read_text(encoding="utf-8").splitlines()
+            self.assertIn("=HYPERLINK(1) \\| x", lines[2])
+            self.assertEqual(1, len({len(re.split(r"(?<!\\)\|", line)) for line in lines}))
+
+    def test_a_program_that_fails_is_named(self):
+        with self.assertRaisesRegex(Refusal, "ended with status 1"):
+            participants.sources("/bin/false")
+
+
 class Measures(unittest.TestCase):
     def test_slopes_changes_and_means_are_those_of_exact_answers(self):
         m = lambda kind, of, **more: experiment_file.Measure("m", kind, of, "t", **more)

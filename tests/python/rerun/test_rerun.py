@@ -114,6 +114,16 @@ class Rerun(unittest.TestCase):
             self.one_sentence(self.rerun(f"{name}.lcmlog", "--scene", "scene.sdf", "--out", name), "rerun: ")
             self.assertFalse((self.folder / name).exists())
 
+    def test_a_malformed_summary_names_no_scene(self):
+        from tactus.refusal import Refusal
+        from tactus.rerun import recording
+        for text in ('{"scene": 0}', '{"scene": ["a.sdf"]}', "[]", "7", "{", "[" * 100_000, '{"scene": null}', '{"scene": "x/other.sdf"}', '{"scene": "a\\u0000"}'):
+            (self.folder / "summary.json").write_text(text, encoding="utf-8")
+            with self.subTest(text[:20]), self.assertRaisesRegex(Refusal, "give its SDF world with --scene"):
+                recording.scene_of(str(self.folder), "world.sdf", None)
+        (self.folder / "world.sdf").write_text("<sdf/>", encoding="utf-8")
+        self.assertEqual(str(self.folder / "world.sdf"), recording.scene_of(str(self.folder), "world.sdf", None))
+
     def test_an_invalid_argument_gives_one_sentence(self):
         (self.folder / "run.lcmlog").write_bytes(b"")
         for words, part in ((["nothing"], "nothing"), ([".", "--draws", "0"], "--draws 0"), ([".", "--seed", "-1"], "--seed"), ([".", "--degrade", "no.xml"], "--degrade no.xml"),

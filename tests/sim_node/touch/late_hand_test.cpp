@@ -234,6 +234,42 @@ TEST_CASE("A suppressed motion is as late as a sent one") {
   }
 }
 
+TEST_CASE("A suppressed motion is released after the sent one that it follows from, also with a jitter") {
+  sync::OperatorChain operators = action_operators("deadband=\"10% velocity\" delay=\"20ms network\" jitter=\"15ms uniform\"");
+  LateHand hand;
+  int sent = 0, received = 0;
+  std::vector<tool_state_t> out;
+  for (int tick = 0; tick < 2000; ++tick) {
+    tool_state_t m = numbered(tick);
+    // One message in a hundred is sent; its velocity names it.
+    m.proxy_velocity_m_s = {1.0f + static_cast<float>(tick / 100), 0, 0};
+    sync::Decisions decisions;
+    hand.push(m, sync::host_time(tick * kTick_ns), operators, &decisions);
+    sent += !decisions.back().decision.dropped();
+    out.clear();
+    hand.release(sync::host_time(tick * kTick_ns), sync::sim_time(tick * kTick_ns), operators, out);
+    for (const tool_state_t& n : out) received += n.header.seq % 100 == 0;
+  }
+  CHECK(sent >= 10);
+  CHECK(received == 20);
+}
+
+TEST_CASE("Under a new profile a motion is predicted from its own updates only") {
+  const std::string rule = "deadband=\"10% velocity predict=linear\"";
+  sync::OperatorChain operators = action_operators(rule);
+  LateHand hand;
+  for (int tick = 0; tick < 4000; ++tick) {
+    if (tick == 1500) operators = action_operators(rule);
+    tool_state_t m = numbered(tick);
+    m.proxy_velocity_m_s = {tick < 1500 ? 0.5f : 0.1f, 0, 0};
+    hand.push(m, sync::host_time(tick * kTick_ns), operators, nullptr);
+    std::vector<tool_state_t> out;
+    hand.release(sync::host_time(tick * kTick_ns), sync::sim_time(tick * kTick_ns), operators, out);
+    REQUIRE(out.size() == 1);
+    CHECK(out[0].proxy_velocity_m_s.x == Approx(m.proxy_velocity_m_s.x).epsilon(0.11));
+  }
+}
+
 TEST_CASE("A deadband of 0 % changes no message of a hand") {
   sync::OperatorChain operators = action_operators("deadband=\"0% position predict=linear\"");
   LateHand hand;

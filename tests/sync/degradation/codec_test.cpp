@@ -263,6 +263,45 @@ TEST_CASE("At a stage quantise, gain and low-pass act before the deadband, as in
   CHECK(shown.x() == Approx(1 - std::exp(-2 * M_PI * 10 * 0.050)).epsilon(1e-9));
 }
 
+TEST_CASE("Under a new profile, and after a restart of the world, the line of the receiver begins without earlier updates") {
+  for (const bool restarts : {false, true}) {
+    const std::string band = "deadband=\"5% force predict=linear\"";
+    OperatorChain before = codec_chain("force", band), after = codec_chain("force", band);
+    StageSignal signal;
+    for (int i = 0; i < 1500; ++i) signal.step(host_time(i * kCodecTick_ns), codec_ms(i), force_of({0, 0, 5 - 1e-6 * i}), before);
+    // The force changes once, so that one update is sent.
+    for (int i = 1500; i < 4000; ++i) {
+      const ForceSample& shown = signal.step(host_time(i * kCodecTick_ns), codec_ms(restarts ? i - 1500 : i), force_of({0, 0, 1}), restarts ? before : after);
+      REQUIRE(shown.force_N.z() == Approx(1).margin(0.05));
+    }
+  }
+}
+
+TEST_CASE("At a stage an adaptive deadband widens with the speed of the hand") {
+  int packets[2] = {0, 0};
+  for (int fast = 0; fast < 2; ++fast) {
+    OperatorChain chain = codec_chain("force", "deadband=\"5% force adaptive=0.5s/m\"");
+    StageSignal signal;
+    Decisions decisions;
+    const auto x = swell();
+    for (int i = 0; i < 1000; ++i) {
+      ForceSample s = force_of(x[static_cast<std::size_t>(i)]);
+      s.speed_m_s = fast ? 0.3 : 0;
+      signal.step(host_time(i * kCodecTick_ns), codec_ms(i), s, chain, &decisions);
+    }
+    for (const DecisionRecord& d : decisions) packets[fast] += !d.decision.dropped();
+  }
+  CHECK(packets[0] == 42);
+  CHECK(packets[1] == 9);  // as with 20 %
+}
+
+TEST_CASE("At a stage a deadband that would never send the end of a force or a motion is refused") {
+  for (const char* rule : {"stage=\"force\" deadband=\"100% force\"", "stage=\"percept\" deadband=\"300% force\"", "stage=\"action\" deadband=\"100% velocity\""})
+    CHECK_THAT(codec_refusal(std::string("modality=\"haptic\" ") + rule), Contains("p.xml:2: ") && Contains("give less, or resend="));
+  CHECK(codec_refusal("modality=\"haptic\" stage=\"force\" deadband=\"100% force resend=50ms\"").empty());
+  CHECK(codec_refusal("modality=\"haptic\" deadband=\"100% velocity\"").empty());
+}
+
 TEST_CASE("predict and passivity are refused where no receiver predicts or no force is displayed") {
   CHECK_THAT(codec_refusal("modality=\"haptic\" deadband=\"10% velocity predict=linear\""), Contains("p.xml:2: ") && Contains("needs a receiver that predicts"));
   CHECK_THAT(codec_refusal("modality=\"audio\" deadband=\"10% force predict=linear\""), Contains("needs a receiver that predicts"));

@@ -3,14 +3,13 @@ import dataclasses
 import pathlib
 import shlex
 
-from tactus import own_files
+from tactus import own_xml
 from tactus.cluster import sites
 from tactus.launch import arguments, hands, scene, walls
 from tactus.refusal import Refusal
 
 SCHEMA = pathlib.Path(__file__).with_name("cluster.xsd")
 SHIPPED = pathlib.Path(__file__).with_name("clusters")
-LARGEST_BYTES = 1_000_000
 MAX_HOSTS = 250  # the addresses of a /24 network
 RECORDER, SYNC, WORLD = "recorder", "sync_node", "sim_node"
 NEEDED = (WORLD, RECORDER)
@@ -85,17 +84,7 @@ def read(text, out="."):
     """The Cluster of a file, or of the shipped file of this name. Raises Refusal with the line."""
     from lxml import etree  # imported only when a file is read
     path = find(text)
-    try:
-        data = own_files.read_regular(path, LARGEST_BYTES)
-    except OSError as error:
-        shipped = ", ".join(sorted(p.stem for p in SHIPPED.glob("*.xml")))
-        raise Refusal(f"{text}: cannot be read ({error.strerror}); give a cluster file, or the name of a shipped one: {shipped}") from None
-    if len(data) > LARGEST_BYTES:
-        raise Refusal(f"{text}: is longer than {LARGEST_BYTES} bytes; this cannot be a cluster file; give another")
-    try:
-        root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True))
-    except etree.XMLSyntaxError as error:
-        raise Refusal(f"{text}:{error.lineno}: {error.msg}") from None
+    root, _ = own_xml.root_of(path, text, "a cluster file", sorted(p.stem for p in SHIPPED.glob("*.xml")))
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
     if not schema.validate(root):
         first = schema.error_log[0]

@@ -71,17 +71,16 @@ def zero(number, digits):
 
 
 def print_task(f):
-    print(f"\n{f['task']}: {f['question']}")
-    print(f"  {len(f['values'])} values, {f['hidden_bits']:.2f} bits, chance {f['chance']:.2f}; {f['variants']} variants, {f['draws']} draws")
-    print(f"  all senses: {interval(f['all'], 'bits')} bits, right {interval(f['all'], 'success')}")
-    print(f"  {'sense':15} {'gain, bits':20} {'gain, right':20} {'without':>11} {'alone':>11} {'share':>6}")
+    terminal.report(f"\n{f['task']}: {f['question']}")
+    terminal.report(f"  {len(f['values'])} values, {f['hidden_bits']:.2f} bits, chance {f['chance']:.2f}; {f['variants']} variants, {f['draws']} draws")
+    terminal.report(f"  all senses: {interval(f['all'], 'bits')} bits, right {interval(f['all'], 'success')}")
+    terminal.report(f"  {'sense':15} {'gain, bits':20} {'gain, right':20} {'without':>11} {'alone':>11} {'share':>6}")
     for sense, s in f["senses"].items():
         pair = lambda r: f"{zero(r['bits'], 2)} {zero(r['success'], 2)}"
-        print(f"  {sense:15} {interval(s['gain'], 'bits'):20} {interval(s['gain'], 'success'):20} {pair(s['without']):>11} {pair(s['only']):>11} {zero(s['share_bits'], 2):>6}"
+        terminal.report(f"  {sense:15} {interval(s['gain'], 'bits'):20} {interval(s['gain'], 'success'):20} {pair(s['without']):>11} {pair(s['only']):>11} {zero(s['share_bits'], 2):>6}"
               + ("  needed" + ("" if holds(s["gain"]) else ", does not hold") if s["needed"] else ""))
     for line in f["warnings"]:
-        print(f"  {line}")
-    sys.stdout.flush()
+        terminal.report(f"  {line}")
 
 
 def stop(number, frame):

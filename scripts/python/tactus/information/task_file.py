@@ -3,7 +3,7 @@ import dataclasses
 import pathlib
 import re
 
-from tactus import own_xml
+from tactus import own_files, own_xml
 from tactus.paths import SCENES
 from tactus.refusal import Refusal
 
@@ -12,6 +12,7 @@ SUFFIX = ".task.xml"
 MAX_RENDERINGS = 10_000
 SHORTEST_WINDOW_S = 0.01  # ten ticks of touch; design
 LOOK_S = 0.25             # between two looks: pictures.LOOKS_HZ
+LARGEST_SCENE_BYTES = 20_000_000  # design
 SENSES = ("visual", "audio", "haptic", "thermal")
 NAMESPACES = {"tactus": "https://tactus.dev/sdf"}
 SECONDS = {"ms": 1e-3, "s": 1.0}
@@ -53,7 +54,6 @@ def shipped():
 
 def read(text):
     """Task of a file, or of the shipped task of that name. Raises Refusal with the line."""
-    from lxml import etree  # slow to import
     path = find(text)
     root, _ = own_xml.root_of(path, text, "a task file", shipped())
     return Reading(text, path, root).task()
@@ -127,10 +127,12 @@ class Reading:
                     " ".join((question.text or "").split()) if question is not None else "", values, variants, self.windows(seconds))
 
     def scene(self):
-        """The scene, beside the task file first, then among those of Tactus."""
+        """The scene, beside the task file or below its folder first, then among those of Tactus."""
         name = self.root.get("scene")
+        if pathlib.PurePath(name).is_absolute() or ".." in pathlib.PurePath(name).parts:
+            self.refuse(self.root, f"the scene {name} is outside the folder of the task file; copy it beside the task file")
         for folder in (self.path.parent, SHIPPED, SCENES):
-            if (folder / name).is_file():
+            if own_files.is_regular(folder / name):
                 return (folder / name).absolute()
         self.refuse(self.root, f"there is no scene {name} beside the task file; correct scene")
 
@@ -144,11 +146,8 @@ def qualified(attribute):
 def changed_scene(scene, changes):
     """XML of the scene with these changes, in order. Raises Refusal."""
     from lxml import etree
-    try:
-        tree = etree.parse(str(scene), etree.XMLParser(resolve_entities=False, no_network=True))
-    except (OSError, etree.XMLSyntaxError) as error:
-        raise Refusal(f"{scene}: cannot be read ({error}); check it with sim_node --check") from None
-    world = tree.getroot().find("world")
+    root, _ = own_xml.root_of(scene, str(scene), "an SDF file with a world", largest_bytes=LARGEST_SCENE_BYTES, keeps_comments=True)
+    world = root.find("world")
     if world is None:
         raise Refusal(f"{scene}: has no <world>; give an SDF file with a world")
     for change in changes:
@@ -167,4 +166,4 @@ def changed_scene(scene, changes):
                 raise Refusal(f"{change.where}: at=\"{change.at}\": {attribute} is not the name of an attribute; write for example tactus:tool/@radius") from None
         else:
             found[0].text = change.to
-    return etree.tostring(tree, xml_declaration=True, encoding="UTF-8")
+    return etree.tostring(root.getroottree(), xml_declaration=True, encoding="UTF-8")

@@ -50,7 +50,7 @@ class Touch:
                 ("direction", list(direction), [turned] * 3, 0.0),
                 ("stiffness", [stiffness_log(size[felt], place[felt] @ direction)], [noise.weber_sd(n["stiffness"])], 0.0),
                 ("onset", [onset], [math.hypot(n["touch_onset"] * 1e-3, n["duration"] * onset)], 0.0),
-                ("vibration", [vibration_log(self.transient[inside] @ direction, n["force_floor"])], [noise.weber_sd(n["vibration_frequency"])], confused)]
+                ("vibration", [vibration_log(self.transient[inside] @ direction, n["force_floor"], float(np.median(np.diff(time))) if len(time) > 1 else 1e-3)], [noise.weber_sd(n["vibration_frequency"])], confused)]
 
     def hand(self, begin_s, end_s):
         """The felt place of the hand, m."""
@@ -66,12 +66,12 @@ def stiffness_log(force_N, along_m):
     return math.log(max(slope, 1.0))
 
 
-def vibration_log(transient_N, floor_N):
-    """Logarithm of the mean frequency of the vibration in Hz; 0 when none is felt."""
+def vibration_log(transient_N, floor_N, step_s):
+    """Logarithm of the mean frequency of the vibration in Hz, of samples every step_s; 0 when none is felt."""
     if len(transient_N) < 8 or np.abs(transient_N).max() < floor_N:
         return 0.0
     power = np.abs(np.fft.rfft(transient_N))**2
-    return math.log(max(float(np.sum(np.fft.rfftfreq(len(transient_N), 1e-3) * power) / power.sum()), 1.0))
+    return math.log(max(float(np.sum(np.fft.rfftfreq(len(transient_N), step_s) * power) / power.sum()), 1.0))
 
 
 class Warmth:

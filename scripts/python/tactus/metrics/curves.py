@@ -5,6 +5,7 @@ the hand is that of the log, so the energy is that of an open loop. --delay adds
 """
 import argparse
 import json
+import math
 import os
 import re
 import sys
@@ -14,6 +15,7 @@ from tactus import palette
 from tactus.metrics import codec, of_run
 from tactus.option_parser import OptionParser
 from tactus.paths import BIN
+from tactus.refusal import Refusal, sentence_of
 from tactus.rerender import render
 
 COLUMNS = ("force_rmse_N", "force_jnd_share", "force_hssim_like", "force_time_ms", "force_value_N", "injected_J")
@@ -39,7 +41,9 @@ def rendered(options, folder, name, band, delay_ms):
 def measure(options, folder):
     rows = []
     _, reference = rendered(options, folder, "reference", None, 0)
-    times = of_run.tool_rows(reference)["time_s"]
+    times = of_run.tool_rows(reference).get("time_s", ())
+    if len(times) < 2 or times.max() <= times.min():
+        raise Refusal(f"{options.log} has no ticks of this hand; give the log of a run with touch, or another --tool")
     rate_hz = (len(times) - 1) / (times.max() - times.min())
     for predictor in codec.PREDICTORS:
         for k in options.bands:
@@ -77,7 +81,7 @@ def draw(rows, path):
     fig.savefig(path, metadata={"Date": None} if path.endswith(".svg") else None)
 
 
-def main(words):
+def arguments(words):
     parser = OptionParser(prog="tactus --module tactus.metrics.curves", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("log", help="run.lcmlog of a run with touch, or its folder")
     parser.add_argument("picture", nargs="?", help="SVG or PNG to write (default: none)")
@@ -91,18 +95,31 @@ def main(words):
     try:
         options.bands = [float(word) for word in options.bands.split(",")]
     except ValueError:
-        parser.error(f"--bands {options.bands}: give numbers separated by commas, for example 0,0.1,0.2")
+        options.bands = [math.nan]
+    if not all(0 <= k < 1 for k in options.bands):
+        parser.error("--bands: give shares from 0 to less than 1 separated by commas, for example 0,0.1,0.2")
+    if not (0 <= options.floor <= 100 and 0 <= options.delay <= 1000):
+        parser.error("--floor and --delay: give 0 to 100 N and 0 to 1000 ms")
+    if options.picture and not options.picture.endswith((".svg", ".png")):
+        parser.error(f"{options.picture}: give a file that ends with .svg or .png")
     if not os.path.exists(options.log):
-        sys.exit(f"curves: {options.log} does not exist; give the run.lcmlog of a run, or its folder")
-    with tempfile.TemporaryDirectory() as folder:
-        try:
+        raise Refusal(f"{options.log} does not exist; give the run.lcmlog of a run, or its folder")
+    return options
+
+
+def main(words):
+    try:
+        options = arguments(words)
+        with tempfile.TemporaryDirectory() as folder:
             rows = measure(options, folder)
-        except render.Refused as refused:
-            sys.exit(f"curves: {refused}")
-    show(rows)
-    if options.picture:
-        draw(rows, options.picture)
-    if options.json:
-        with open(options.json, "w", encoding="utf-8") as file:
-            json.dump({"log": os.path.abspath(options.log), "delay_ms": options.delay, "passivity": options.passivity, "rows": rows}, file, indent=1)
+        show(rows)
+        if options.picture:
+            draw(rows, options.picture)
+        if options.json:
+            with open(options.json, "w", encoding="utf-8") as file:
+                json.dump({"log": os.path.abspath(options.log), "delay_ms": options.delay, "passivity": options.passivity, "rows": rows}, file, indent=1)
+    except (Refusal, render.Refused) as refused:
+        sys.exit(f"curves: {refused}")
+    except OSError as error:
+        sys.exit(f"curves: {sentence_of(error)}")
     return 0

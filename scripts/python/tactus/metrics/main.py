@@ -28,6 +28,7 @@ from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import packages_remedy
 from tactus.refusal import Refusal, sentence_of
+from tactus.tables import escaped
 
 
 def arguments(words):
@@ -96,7 +97,7 @@ def write(options, found):
         with open(options.csv, "w", encoding="utf-8", newline="", errors="backslashreplace") as file:
             table = csv.DictWriter(file, ["run", *of_run.MEANING], lineterminator="\n")
             table.writeheader()
-            table.writerows({"run": path, **metrics} for path, metrics in found.items())
+            table.writerows({"run": escaped(path), **metrics} for path, metrics in found.items())
 
 
 def main(words):

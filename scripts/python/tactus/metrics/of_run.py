@@ -33,7 +33,7 @@ def tool_rows(folder, tool=None):
     """{column: array} of one tool of haptic.csv; tool None: the first with a simulated time. {} without such a table, or without rows. Raises Refusal with file
     and line, and for a tool that the table does not have."""
     path = os.path.join(folder, "haptic.csv")
-    if not os.path.exists(path):
+    if not os.path.isfile(path):
         return {}
     needed, energies = ("time_s", "force_x_N", "force_y_N", "force_z_N"), ("injected_J", "generated_J")
     columns, wanted, tools = {name: [] for name in (*needed, *energies)}, tool, set()
@@ -54,9 +54,10 @@ def presented_ns(folder):
     """{modality: {event: ns}}, of presented.csv of a run or presented_MODALITY.csv of a rendering; only the hits of touch. Raises Refusal with file and line."""
     found = {}
     for name in sorted(os.listdir(folder)):
-        if not name.startswith("presented") or not name.endswith(".csv"):
+        path = os.path.join(folder, name)
+        if not name.startswith("presented") or not name.endswith(".csv") or not os.path.isfile(path):
             continue
-        for where, row in files.numbered_rows(os.path.join(folder, name), ("event_id", "modality", "part", "outcome", "presented_ns")):
+        for where, row in files.numbered_rows(path, ("event_id", "modality", "part", "outcome", "presented_ns")):
             at_ns = files.whole(row, "presented_ns", where)
             if at_ns >= 0 and row["outcome"] in log_tables.PRESENTED and (row["modality"], row["part"]) != ("haptic", "constraint"):
                 found.setdefault(row["modality"], {}).setdefault(row["event_id"], at_ns)
@@ -145,16 +146,20 @@ def of_pictures(reference, other, pictures, every=15):
 
 def sent_per_s(tables):
     """Packets per second that the deadband of a stage of touch sends; None without one."""
-    sent, suppressed, times = 0, 0, []
+    streams = {}  # {(process, modality and stage): [sent, suppressed, times]}; another stage may have many more updates
     for message in tables.messages("DEGRADED.csv"):
         if not message["modality"].startswith("haptic"):
             continue
         for i in range(int(message["count"])):
+            if int(message[f"decisions[{i}].is_event"]):
+                continue
             why = int(message[f"decisions[{i}].drop_reason"])
-            suppressed += why == log_tables.DROP_REASONS.index("deadband")
-            sent += why in (0, log_tables.DROP_REASONS.index("loss"))
-            times.append(int(message[f"decisions[{i}].time_ns"]) * 1e-9)
-    return sent / (max(times) - min(times)) if suppressed and max(times) > min(times) else None
+            own = streams.setdefault((message["sender"], message["modality"]), [0, 0, []])
+            own[0] += why in (0, log_tables.DROP_REASONS.index("loss"))
+            own[1] += why == log_tables.DROP_REASONS.index("deadband")
+            own[2].append(int(message[f"decisions[{i}].time_ns"]) * 1e-9)
+    rates = [sent / (max(times) - min(times)) for sent, suppressed, times in streams.values() if suppressed and max(times) > min(times)]
+    return sum(rates) if rates else None
 
 
 def metrics(folder, reference=None, tables=None, tool=None, pictures=None, explain=lambda sentence: None):

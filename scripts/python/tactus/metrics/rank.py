@@ -6,27 +6,29 @@ of the other operators. A table of games of one task permits no other division. 
 operator (scripts/python/tactus/metrics/ranking.py). --write stores the ranking that tactus report uses.
 """
 import argparse
-import csv
-import io
 import json
-import lzma
 import os
 import pathlib
 import sys
 
 from tactus.metrics import ranking
 from tactus.option_parser import OptionParser
+from tactus.refusal import Refusal, sentence_of
+from tactus.sweep import adopted
 
 ROOT = pathlib.Path(__file__).resolve().parents[4]
 
 
-def read(path):
-    data = pathlib.Path(path).read_bytes()
-    text = (lzma.decompress(data) if path.endswith(".xz") else data).decode("utf-8")
-    return csv.DictReader(io.StringIO(text))
-
-
 def main(words):
+    try:
+        return rank(words)
+    except Refusal as refusal:
+        sys.exit(f"rank: {refusal}")
+    except OSError as error:
+        sys.exit(f"rank: {sentence_of(error)}")
+
+
+def rank(words):
     parser = OptionParser(prog="tactus --module tactus.metrics.rank", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("games", nargs="?", default=str(ROOT / "docs" / "how_far" / "games.csv.xz"), help="table of games (default: docs/how_far/games.csv.xz)")
     parser.add_argument("--write", action="store_true", help="store the ranking in scripts/python/tactus/metrics/ranking.json")
@@ -34,7 +36,7 @@ def main(words):
     options = parser.parse_args(words)
     if not os.path.isfile(options.games):
         sys.exit(f"rank: {options.games} is not a file; give a table of games, games.csv or games.csv.xz")
-    conditions = ranking.conditions_of(read(options.games))
+    conditions = ranking.conditions_of(adopted.read(options.games).values())
     ranked = ranking.rank(conditions)
     games = sum(c["games"] for c in conditions if c["operator"])
     print(f"{games} games under {len(conditions)} conditions\n\n{'metric':22} {'loss, bits':>10} {'skill':>8}  loss of each operator that is left out")

@@ -102,16 +102,16 @@ def rank(conditions):
 
 
 def conditions_of(rows):
-    """The conditions of a table of games (docs/study_formats.md) that degrade one modality of STREAM_HZ by one of OPERATORS, and the undegraded one for each
+    """The conditions of the rows of a table of games (study/trial_table.py, docs/study_formats.md) that degrade one modality of STREAM_HZ by one of OPERATORS, and the undegraded one for each
     modality, with their metrics."""
     counts = {}
     for row in rows:
-        if row["second_modality"] or row["success"] not in ("0", "1") or (row["operator"] and row["operator"] not in OPERATORS):
+        if row["second_modality"] or row["success"] not in (0, 1) or (row["operator"] and row["operator"] not in OPERATORS):
             continue
         for modality in ([row["modality_degraded"]] if row["operator"] else STREAM_HZ):
             if modality in STREAM_HZ:
                 own = counts.setdefault((modality, row["operator"], float(row["level"] or 0)), [0, 0])
-                own[0] += int(row["success"])
+                own[0] += row["success"]
                 own[1] += 1
     return [{"modality": m, "operator": o, "level": level, "won": won, "games": games, "metrics": of_condition(m, o, level)}
             for (m, o, level), (won, games) in sorted(counts.items())]

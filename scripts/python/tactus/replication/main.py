@@ -8,7 +8,7 @@ import math
 import pathlib
 import time
 
-from tactus import own_files, terminal
+from tactus import own_files, tables, terminal
 from tactus.commands import prepare
 from tactus.refusal import Refusal, sentence_of
 from tactus.replication import experiment_file, measures, participants, verdict
@@ -111,11 +111,12 @@ def summary(rows):
 def write_table(folder, rows):
     """replications.csv with all numbers, and replications.md, the printed table."""
     with open(folder / "replications.md", "w", encoding="utf-8") as file:
-        file.write("\n".join(f"| {' | '.join(line)} |" for line in (HEADER, ("---",) * len(HEADER), *map(line_of, rows))) + "\n")
+        lines = (HEADER, ("---",) * len(HEADER), *map(line_of, rows))
+        file.write("\n".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |" for line in lines) + "\n")
     with open(folder / "replications.csv", "w", newline="", encoding="utf-8") as file:
         out = csv.DictWriter(file, COLUMNS)
         out.writeheader()
-        out.writerows(row.fields() for row in rows)
+        out.writerows({name: tables.escaped(text) for name, text in row.fields().items()} for row in rows)
 
 
 def write_answers(folder, experiment, trials):

@@ -51,8 +51,10 @@ class TrialProgram:
 
 
 def sources(path):
-    """{paradigm: {property: source}} of the program."""
-    done = subprocess.run([str(path), "properties"], stdout=subprocess.PIPE, text=True, check=True, encoding="utf-8")
+    """{paradigm: {property: source}} of the program. Raises Refusal."""
+    done = subprocess.run([str(path), "properties"], stdout=subprocess.PIPE, text=True, check=False, encoding="utf-8", errors="replace")
+    if done.returncode != 0:
+        raise Refusal(f"{path}: ended with status {done.returncode}; run scripts/build {PROGRAM}")
     found = {}
     for row in csv.DictReader(io.StringIO(done.stdout)):
         found.setdefault(row["paradigm"], {})[row["property"]] = row["source"]

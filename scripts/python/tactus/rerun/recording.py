@@ -10,7 +10,7 @@ import tempfile
 import numpy as np
 from scipy import interpolate
 
-from tactus import tables
+from tactus import own_files, tables
 from tactus.log import description
 from tactus.log.log_tables import LogTables
 from tactus.paths import BIN, SCENES, remedy
@@ -22,6 +22,7 @@ ENDED = re.compile(r"virtual_time: (\S+) ended; see its message above")
 LOST = ("none", "stale")  # status of the touch model without a world
 BEFORE_S = 0.3     # design: the hand before the world, from which its motion at the start follows
 GAP_S = 0.02       # design: longer gaps of the record are reported
+LARGEST_SUMMARY_BYTES = 10_000_000  # design
 EVEN = 0.02        # ticks whose spacing varies by less than this share of it are even
 
 
@@ -134,11 +135,10 @@ def scene_of(log, name, given):
             raise Refusal(f"--scene {given}: is not a file; give the SDF world of the log")
         return os.path.abspath(given)
     try:
-        with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
-            text = json.load(file).get("scene", "")
-    except (OSError, ValueError, AttributeError):
+        text = json.loads(own_files.read_regular(os.path.join(folder, "summary.json"), LARGEST_SUMMARY_BYTES))["scene"]
+    except (OSError, ValueError, RecursionError, KeyError, TypeError):
         text = ""
-    for path in (text, os.path.join(folder, name), SCENES / name):
+    for path in (text if isinstance(text, str) else "", os.path.join(folder, name), SCENES / name):
         if name and path and os.path.isfile(path) and os.path.basename(path) == name:
             return os.path.abspath(path)
     raise Refusal(f"the scene {name or 'of the log'} is not found; give its SDF world with --scene")
