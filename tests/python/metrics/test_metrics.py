@@ -181,7 +181,6 @@ class Runs(unittest.TestCase):
         found = of_run.metrics(self.run_folder("one"))
         self.assertEqual(list(found), ["onset_soa_ms", "injected_J", "generated_J"])
 
-
     def test_the_packets_of_a_deadband_are_those_of_its_own_stage(self):
         class Decisions:
             def messages(self, _):

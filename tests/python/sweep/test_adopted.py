@@ -29,7 +29,7 @@ class Adopted(unittest.TestCase):
 
     def test_a_compressed_table_is_read(self):
         self.path.write_bytes(lzma.compress(trial_table.text([ROW]).encode()))
-        self.assertEqual(5, adopted.read(self.path)["=c", 5]["seed"])
+        self.assertEqual(5, adopted.read(self.path)[ROW["participant_id"], "=c", 5]["seed"])
 
     def test_a_small_file_that_expands_without_end_is_refused_at_the_limit(self):
         self.addCleanup(setattr, trial_table, "LARGEST_BYTES", trial_table.LARGEST_BYTES)

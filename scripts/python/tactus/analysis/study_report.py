@@ -29,7 +29,7 @@ class Report:
         return table(caption + self.who(), head, rows, self.tables)
 
     def who(self):
-        return " <b>observer = simulated</b>." if self.analysis.observer == "simulated" else f" Observers: {self.analysis.observer}." if "simulated" in self.analysis.observer else ""
+        return f" <b>observer = {safe(self.analysis.observer)}</b>." if self.analysis.observer.startswith("simulated") else f" Observers: {safe(self.analysis.observer)}." if "simulated" in self.analysis.observer else ""
 
     def cite(self, source):
         if source not in self.sources:
@@ -69,8 +69,8 @@ def head(report):
     sentences = [f"{number(len(a.trials))} trials and games of {number(people)} participant{'s' if people != 1 else ''} were analysed"
                  + (f"; {number(a.left_out)} were left out because the apparatus missed its tolerance." if a.left_out else "; none was left out.")]
     if "simulated" in a.observer:
-        sentences.append("<b>observer = simulated</b>: no person took part; all results are of simulated participants."
-                         if a.observer == "simulated" else "<b>Some observers were simulated</b>; figures and tables mix them with people.")
+        sentences.append(f"<b>observer = {safe(a.observer)}</b>: no person took part; all results are of simulated participants."
+                         if a.observer.startswith("simulated") else "<b>Some observers were simulated</b>; figures and tables mix them with people.")
     for limit in (l for l in a.limits if l.kind == "break" and l.by.split()[0] == limits.EITHER):
         whose = limit.by.removeprefix(limits.EITHER)
         sentences.append(f"L_break of {safe(limit.factor.words() + whose)}: {safe(value_of(limit))}.")

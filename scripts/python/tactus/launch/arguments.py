@@ -6,6 +6,7 @@ import pathlib
 import time
 import xml.etree.ElementTree
 
+from tactus import players
 from tactus.launch import hands, scene, walls
 from tactus.paths import SCENES, settings_table
 from tactus.refusal import Refusal
@@ -14,7 +15,8 @@ from tactus.tables import read_rows
 SENSES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
 PLAYER = "participant"  # name of its node, also in recordings
 PLAYER_PROGRAM = "simulated_player"
-PLAYERS = ("stage_model", "observer")  # the first is the default; also observer:NUMBER
+PLAYERS = players.NAMES
+PLAYER_CHECKS = ("require", "count", "skip")  # scripts/simulated_player/observer_admission.h
 REMOVABLE = ("sim_node", *SENSES, "sync_node")
 MIN_FREE_BYTES = 20_000_000  # about ten seconds of log and sound
 FULL_BYTES = 65536  # a disk with less space has refused the last messages: the recorder writes blocks of this size
@@ -56,6 +58,7 @@ class Plan:
     programs: dict = dataclasses.field(default_factory=dict)  # of --program: {program: path of the one that replaces it}
     json: pathlib.Path = None  # of --json: a second place for summary.json
     player: str = ""  # the simulated player that holds the device of the first tool; "": none
+    checks: str = "require"  # rule for a player of a population that fails a check: PLAYER_CHECKS
     virtual: list = None  # options of virtual_time; None: a live run in real time
 
     def nodes(self):
@@ -102,6 +105,7 @@ def parse(words, here):
         parser.add_argument("--" + option.replace("_", "-"))
     parser.add_argument("--tags", action="append", default=[])
     parser.add_argument("--player", default="")
+    parser.add_argument("--checks", choices=PLAYER_CHECKS, default=PLAYER_CHECKS[0])
     parser.add_argument("--virtual-time", action="store_true")
     for option in BUS_OPTIONS:
         parser.add_argument(f"--{option}")
@@ -141,7 +145,7 @@ def parse(words, here):
                 degrade=profile(here, a.degrade), playout=playout(a),
                 window=a.window, recorder=recording(a), live=live_port(a.live), listen=a.listen, realtime=a.realtime,
                 seed=int(number("--seed", a.seed, 0, 2**63 - 1, "", whole=True)), network=a.network,
-                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player,
+                port=int(number("--port", a.port, 1024, 65534, "", whole=True)), settings=settings(a.set, several), virtual=virtual(a), player=a.player, checks=a.checks,
                 json=(here / a.json).absolute() if a.json else None, programs=programs(here, a.program))
     if plan.player and not is_player(plan.player):
         raise Refusal(f"--player={plan.player}: there is no such player; write {', '.join(PLAYERS)} or observer:NUMBER")
@@ -176,10 +180,7 @@ def with_player(words):
             for part in ((word, PLAYERS[0]) if word == "--player" and not is_player(following) else (word,))]
 
 
-def is_player(word):
-    """True for stage_model, observer and observer:NUMBER (scripts/simulated_player/player_choice.h)."""
-    name, colon, number = word.partition(":")
-    return word in PLAYERS or name == "observer" and bool(colon) and number.isascii() and number.isdigit() and int(number) < 2**32
+is_player = players.is_player
 
 
 def with_live_port(words):

@@ -4,7 +4,7 @@ import os
 import stat
 import time
 
-from tactus import own_files, signals, terminal
+from tactus import own_files, players, signals, terminal
 from tactus.launch import arguments, cluster, cluster_folder, delays, equipment, hands, live, network, priority, privileges, virtual, walls
 from tactus.launch.results import WORLD_STOPPED, git_commit, summarise
 from tactus.paths import remedy
@@ -92,6 +92,8 @@ def inputs(plan):
 def run(plan, watch=watch_over):
     """Executes one run; watch(running, seconds, stop) determines its duration. Returns the errors, one sentence each.
     Raises Refusal when the run does not start."""
+    if ":" in plan.player and plan.checks != "skip":
+        players.checked([players.Player(plan.player)], plan.checks, report_run)
     kept = privileges.needed(inputs(plan))
     if plan.virtual is not None:
         return virtual.run(plan, signals.Stop(), claim_out, kept)

@@ -1,6 +1,7 @@
 """A game as a trial: runs it and records success, completion time and mistakes."""
 import dataclasses
 
+from tactus import players
 from tactus.refusal import Refusal
 from tactus.study import stimuli
 from tactus.study.trial_runner_client import TrialRunnerClient
@@ -67,16 +68,28 @@ def play_simulated(session, trial, attempt):
     profile.write_text(study.profile(trial.condition, trial.level), encoding="utf-8")
     seed = session.plan.draw(f"game {trial.number} {attempt}")
     out = runs / f"game{trial.number}_{attempt}"
-    played = play_in_new_cluster(out, study.scene, profile, seed, study.stimulus.limit_s, session.options.set)
+    player = session.player
+    played = play_in_new_cluster(out, study.scene, profile, seed, study.stimulus.limit_s, session.options.set, player.name)
     played.row["seed"] = seed
+    played.row["player"], played.row["failed_checks"] = player.words(), player.verdict()
     played.row["log_file"] = str((out / "run.lcmlog").relative_to(session.folder))
     return played
 
 
-def play_in_new_cluster(out, scene, profile, seed, limit_s, settings):
+def live_player(study, report):
+    """The simulated player of the live games of a study, checked. Raises Refusal."""
+    player = study.players[0]
+    if len(study.players) > 1:
+        raise Refusal(f"{study.path}: a session has one player, but the study has {len(study.players)}; keep one <player>, or use tactus study sweep")
+    if player.population != 1 or player.practice:
+        raise Refusal(f"{study.path}: a live game has players of population 1 without practice; remove population= and practice=, or use tactus study sweep")
+    return players.checked([player], study.checks, report)[0]
+
+
+def play_in_new_cluster(out, scene, profile, seed, limit_s, settings, player=players.NAMES[0]):
     """Starts a live cluster with the simulated player, plays one game and ends the cluster; returns a Played. out: results folder. profile: a file.
-    settings: of the cluster, NODE.NAME=VALUE each. Raises Refusal."""
-    words = [str(scene), "--player", "--seed", str(seed), "--degrade", str(profile)]
+    settings: of the cluster, NODE.NAME=VALUE each. player: its name, which has passed its checks or need not. Raises Refusal."""
+    words = [str(scene), "--player", player, *(["--checks", "skip"] if ":" in player else []), "--seed", str(seed), "--degrade", str(profile)]
     cluster = LiveCluster(out, words + [w for s in settings for w in ("--set", s)])
     runner = None
     try:

@@ -75,7 +75,7 @@ def run_session(study, options):
 class Session:
     def __init__(self, study, options, plan, journal, folder, observer):
         self.study, self.options, self.plan, self.journal, self.folder, self.observer = study, options, plan, journal, folder, observer
-        self.cluster = self.runner = self.participant = None
+        self.cluster = self.runner = self.participant = self.player = None
         self.began, self.trials_done = time.monotonic(), 0
         self.trials_began = self.began  # set again after the start of the cluster and the instructions
         self.errors_ms, self.missed = [], 0
@@ -140,6 +140,7 @@ class Session:
 
     def run(self):
         if self.study.task == "game" and self.options.simulated:
+            self.player = games.live_player(self.study, report)
             return self.run_trials(games.play_simulated)
         self.start()
         for text in self.study.instructions:

@@ -7,7 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from tactus import own_xml
+from tactus import own_xml, players
 from tactus.paths import SCENES, SCRIPTS
 from tactus.psychophysics import functions, observers
 from tactus.refusal import Refusal
@@ -45,7 +45,8 @@ class Item:
 @dataclasses.dataclass(frozen=True)
 class Stimulus:
     """by: apparatus or participant. The hand of the apparatus starts at `rest_m`, `above_m` over the surface, and taps or presses `depth_m` into the
-    surface; a press goes down and up `times` times, each in `period_s`. limit_s: time limit of a game."""
+    surface; a press goes down and up `times` times, each in `period_s`. limit_s: time limit of a game. common_starts: whether game n has the same seed in all
+    conditions, so that conditions are compared with common random numbers."""
     by: str = "apparatus"
     rest_m: tuple = (0.0, 0.0, 0.04)
     above_m: float = 0.032
@@ -53,6 +54,7 @@ class Stimulus:
     period_s: float = 1.0
     times: int = 2
     limit_s: float = 30.0
+    common_starts: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -93,6 +95,8 @@ class Study:
     repeats: int          # largest number of repetitions of a trial
     margin: dict          # {"time": share, "success": share}
     observers: dict       # {condition id, or "": Observer}
+    players: tuple        # of players.Player: the simulated players of a game
+    checks: str           # players.CHECKS: the rule for players that fail a check
 
     def profile(self, condition, level):
         """XML of the degradation profile of a trial; level None: the base alone."""
@@ -208,7 +212,20 @@ class Reading:
             tolerance_ms=self.quantity(tolerance, "asynchrony", quantities.OPERATORS["delay"], 20.0),
             repeats=int(tolerance.get("repeats", "3")) if tolerance is not None else 3,
             margin={"time": self.quantity(margin, "time", quantities.SHARE, 10.0) / 100, "success": self.quantity(margin, "success", quantities.SHARE, 10.0) / 100},
-            observers=self.observers(found, kind))
+            observers=self.observers(found, kind), **self.players(task))
+
+    def players(self, task):
+        elements = self.root.findall("player")
+        if elements and task != "game":
+            self.refuse(elements[0], "a <player> plays games; remove it, or set task=\"game\"")
+        found = [player for e in elements for player in self.checked(e, players.several, e.get("name"), e.get("numbers"), int(e.get("population", "1")),
+                                                                     int(e.get("practice", "0")))]
+        if len({(p.name, p.population) for p in found}) < len(found) or len(found) > players.MOST:
+            self.refuse(elements[0], f"a player occurs twice, or there are more than {players.MOST}; give each once")
+        rules = {e.get("checks") for e in elements} - {None}
+        if len(rules) > 1:
+            self.refuse(elements[0], f"the players have different rules for failed checks; give one of {', '.join(players.CHECKS)}")
+        return {"players": tuple(found) or (players.Player(),), "checks": (rules or {players.CHECKS[0]}).pop()}
 
     def scene(self):
         text = self.root.get("scene")
@@ -327,7 +344,7 @@ class Reading:
             self.refuse(e, "rest= needs three numbers: x y z, m")
         return Stimulus(e.get("by", usual.by), rest, number("above", usual.above_m, 1), number("depth", usual.depth_m, 0.1),
                         self.quantity(e, "period", quantities.OPERATORS["delay"], usual.period_s * 1e3) / 1e3, int(e.get("times", usual.times)),
-                        self.quantity(e, "limit", ("s", {"s": 1.0}, 1, 3600), usual.limit_s))
+                        self.quantity(e, "limit", ("s", {"s": 1.0}, 1, 3600), usual.limit_s), e.get("starts", "own") == "common")
 
     def within(self, e, name, value, most):
         if not 0 <= value <= most:

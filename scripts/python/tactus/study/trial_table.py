@@ -64,6 +64,9 @@ COLUMNS = {
     "log_file": Column("", "log of all bus messages, relative to the participant's folder"),
     "log_offset": Column("s", "time of the stimulus, or of the start of the game, since the start of the log", "number"),
     "observer": Column("", "source of the answers: a human, or a simulated observer or player", levels=("human", "simulated")),
+    "player": Column("", "simulated player of a game: stage_model, the player of fixed rules, or observer, a model of people, with its number in the population; empty: "
+                         "a person, or a table from before this column"),
+    "failed_checks": Column("", "numbers of the twelve checks that this player of a population fails, or none; empty: it has no checks"),
     "study": Column("", "name of the study"),
     "condition": Column("", "name of the condition within the study"),
     "second_modality": Column("", "second sense, degraded at the same time, as modality_degraded; empty: none"),

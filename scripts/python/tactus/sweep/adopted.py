@@ -15,7 +15,7 @@ SAME = ("missed", "success", "completion_time_s", "errors", "peak_force_n", "pat
 
 
 def read(path):
-    """{(condition, seed): row} of the games of a table, CSV or CSV.xz. Raises Refusal."""
+    """{(participant, condition, seed): row} of the games of a table, CSV or CSV.xz. Raises Refusal."""
     path = pathlib.Path(path)
     try:
         rows = trial_table.read(path) if path.suffix != ".xz" else trial_table.parsed(plain_bytes(path, trial_table.LARGEST_BYTES), path)
@@ -23,7 +23,7 @@ def read(path):
         raise Refusal(f"{path}: holds no table of games ({error}); give games.csv or .csv.xz of a sweep") from None
     except OSError as error:
         raise Refusal(f"{path}: cannot be read ({sentence_of(error)}); give games.csv or .csv.xz of a sweep") from None
-    return {(row["condition"], row["seed"]): row for row in rows if row["task"] == "game"}
+    return {(row["participant_id"], row["condition"], row["seed"]): row for row in rows if row["task"] == "game"}
 
 
 def plain_bytes(path, largest_bytes):
@@ -41,19 +41,19 @@ def plain_bytes(path, largest_bytes):
 
 
 def adopt(folder, table):
-    """Copies the rows of the table that belong to this sweep into its chunks; returns their number. Replays the first game of each condition; its result must
+    """Copies the rows of the table that belong to this sweep into its chunks; returns their number. Replays the first game of each condition and player; its result must
     be identical, since another build may give other games. Raises Refusal, OSError."""
     known, seen, count = read(table), set(), 0
     with Player(folder.study.scene) as player:
         for number, chunk in enumerate(folder.chunks):
             rows = []
             for game in chunk:
-                row = known.get((game.condition.id, game.seed(folder.study)))
+                row = known.get((game.player.participant, game.condition.id, game.seed(folder.study)))
                 if row is None or row["missed"]:
                     continue
-                row = {**row, "trial": game.number}
-                if game.condition.id not in seen:
-                    seen.add(game.condition.id)
+                row = {**row, "trial": game.number, "player": game.player.words(), "failed_checks": game.player.verdict()}
+                if (game.player, game.condition.id) not in seen:
+                    seen.add((game.player, game.condition.id))
                     again = virtual_games.row(folder.study, game, player.play(virtual_games.request(folder.study, game)))
                     if [row[k] for k in ("profile_sha256", *SAME)] != [again.get(k) for k in ("profile_sha256", *SAME)]:
                         raise Refusal(f"{table}: its game {row['condition']}, seed {row['seed']}, has another result with this build; remove --from")

@@ -1,11 +1,12 @@
 """The folder of a sweep: a copy of the study, the requested games, a file for each chunk of games, and the table."""
+import dataclasses
 import fcntl
 import hashlib
 import json
 import os
 import pathlib
 
-from tactus import own_files
+from tactus import own_files, players
 from tactus.refusal import Refusal
 from tactus.study import study_file, trial_table
 from tactus.sweep import chunk_file
@@ -22,25 +23,32 @@ class SweepFolder:
         try:
             self.asked = json.loads(own_files.read_regular(self.path / "sweep.json", LARGEST_BYTES))
             self.games_each, study = int(self.asked["games"]), str(self.asked["study"])
+            self.players = [player_of(p) for p in self.asked.get("players", [{}])]
         except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise Refusal(f"{self.path}: holds no sweep to resume; remove --resume and give a new --out") from None
         self.study = study_file.read(study)
         for file, sha256, name in ((self.study.path, self.study.sha256, "study_sha256"), (self.study.scene, scene_sha256(self.study), "scene_sha256")):
             if sha256 != self.asked.get(name):
                 raise Refusal(f"{file}: has changed since this sweep began, so its games would differ; start a new sweep with another --out")
-        self.chunks = games_of(self.study, self.games_each)
+        self.chunks = games_of(self.study, self.games_each, self.players)
         (self.path / "chunks").mkdir(exist_ok=True)
         trial_table.replace(self.path / "study.xml", self.study.path.read_bytes())  # for an analysis on another machine
 
     @staticmethod
-    def begin(path, study, games):
-        """Creates the folder of a new sweep. Raises Refusal if the path is in use."""
+    def refuse_used(path):
+        """The path of a new sweep. Raises Refusal if it is in use."""
         path = pathlib.Path(path)
         if path.exists() and (not path.is_dir() or any(path.iterdir())):
             raise Refusal(f"{path}: already exists; add --resume to continue that sweep, or choose another --out")
+        return path
+
+    @staticmethod
+    def begin(path, study, games, all_players=(players.Player(),)):
+        """Creates the folder of a new sweep of these players. Raises Refusal if the path is in use."""
+        path = SweepFolder.refuse_used(path)
         path.mkdir(parents=True, exist_ok=True)
         trial_table.replace(path / "sweep.json", json.dumps(
-            {"study": str(study.path.resolve()), "games": games, "study_sha256": study.sha256, "scene_sha256": scene_sha256(study)}, indent=1) + "\n")
+            {"study": str(study.path.resolve()), "games": games, "study_sha256": study.sha256, "scene_sha256": scene_sha256(study), "players": [dataclasses.asdict(p) for p in all_players]}, indent=1) + "\n")
         return SweepFolder(path)
 
     def hold(self):
@@ -70,6 +78,15 @@ class SweepFolder:
                 rows += trial_table.read(self.file(i))
         trial_table.write(self.path / "games.csv", rows)
         return rows
+
+
+def player_of(stored):
+    """A player of sweep.json. Raises TypeError, ValueError."""
+    player = players.Player(**stored)
+    if not players.is_player(player.name):
+        raise ValueError
+    return dataclasses.replace(player, population=int(player.population), practice=int(player.practice),
+                               failed=None if player.failed is None else tuple(map(int, player.failed)))
 
 
 def scene_sha256(study):

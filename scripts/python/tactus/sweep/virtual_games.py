@@ -2,47 +2,53 @@
 import dataclasses
 import hashlib
 
+from tactus import players
+
 CHUNK = 50  # games of one job, about 15 s: short against the sweep, long against reading the scene; design
 
 
 @dataclasses.dataclass(frozen=True)
 class Game:
-    """One game: its number in the sweep (from 1), its condition, its number within the condition (from 1)."""
+    """One game: its number in the sweep (from 1), its condition, its number within the condition and player (from 1), and its player."""
     number: int
     condition: object
     repetition: int
+    player: players.Player = players.Player()
 
     def seed(self, study):
-        """Seed of all random draws of the game; it depends on study seed, condition and repetition only. 53 bits: exact in JSON."""
-        text = f"{study.seed}|{self.condition.id}|{self.repetition}"
+        """Seed of all random draws of the game; it depends on study seed, condition and repetition only, with common starts not on the condition. 53 bits:
+        exact in JSON."""
+        text = f"{study.seed}|{'' if study.stimulus.common_starts else self.condition.id}|{self.repetition}"
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") >> 11
 
 
-def games_of(study, repetitions):
-    """[[Game]]: chunks of games, each of one condition. The first chunks of all conditions come before the second ones."""
+def games_of(study, repetitions, all_players=(players.Player(),)):
+    """[[Game]]: chunks of games, each of one condition and player. The first chunks of all conditions come before the second ones."""
     chunks = []
     for first in range(1, repetitions + 1, CHUNK):
-        for condition in study.conditions:
-            chunks.append([(condition, n) for n in range(first, min(first + CHUNK, repetitions + 1))])
+        for player in all_players:
+            for condition in study.conditions:
+                chunks.append([(condition, n, player) for n in range(first, min(first + CHUNK, repetitions + 1))])
     games, number = [], 0
     for chunk in chunks:
         games.append([])
-        for condition, n in chunk:
+        for of_game in chunk:
             number += 1
-            games[-1].append(Game(number, condition, n))
+            games[-1].append(Game(number, *of_game))
     return games
 
 
 def request(study, game):
     """Request of a game for bin/play_games."""
-    return {"game": str(game.number), "seed": game.seed(study), "limit_s": study.stimulus.limit_s, "profile": study.profile(game.condition, game.condition.fixed)}
+    return {"game": str(game.number), "seed": game.seed(study), "limit_s": study.stimulus.limit_s, "profile": study.profile(game.condition, game.condition.fixed),
+            **game.player.request()}
 
 
 def row(study, game, result):
     """Row of the trial table (tactus/study/trial_table.py) from the result of bin/play_games."""
     level = game.condition.fixed
-    row = {"participant_id": "player", "session": 1, "block": 1, "trial": game.number, "task": "game", "observer": "simulated",
-           "study": study.name, "condition": game.condition.id, "seed": game.seed(study),
+    row = {"participant_id": game.player.participant, "session": 1, "block": 1, "trial": game.number, "task": "game", "observer": "simulated",
+           "player": game.player.words(), "failed_checks": game.player.verdict(), "study": study.name, "condition": game.condition.id, "seed": game.seed(study),
            "profile_sha256": hashlib.sha256(study.profile(game.condition, level).encode()).hexdigest(),
            "latency_profile": "virtual time", **game.condition.row(level)}
     if "trouble" in result:

@@ -1,0 +1,158 @@
+"""The simulated players of a study: their names, their checks, and their place in every table and report."""
+import pathlib
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "scripts" / "python"))
+from tactus import players
+from tactus.analysis import trials
+from tactus.refusal import Refusal
+from tactus.study import games, study_file, trial_table
+from tactus.sweep import main as sweep_main
+from tactus.sweep import virtual_games
+from tactus.sweep.sweep_folder import SweepFolder
+
+STUDY = f"""<?xml version="1.0" encoding="UTF-8"?>
+<study name="who" version="1" scene="{ROOT}/sim_node/scenes/dark_room.sdf" task="game" seed="3">
+  <conditions><nothing/><factor modality="visual" operator="delay" levels="100ms 300ms"/></conditions>
+  <procedure kind="constant" repetitions="1"/>
+  <response kind="performance"/>
+  <stimulus by="participant" limit="30s"/>
+  PLAYERS
+</study>
+"""
+RESULT = {"won": True, "time_s": 12.5, "wrong": 0, "peak_force_N": 3.0, "path_m": 1.5}
+
+
+class Players(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def study(self, elements, **change):
+        text = STUDY.replace("PLAYERS", elements)
+        for old, new in change.items():
+            text = text.replace(*new) if isinstance(new, tuple) else text.replace(old, new)
+        path = self.folder / "who.xml"
+        path.write_text(text, encoding="utf-8")
+        return study_file.read(str(path))
+
+    def test_a_study_without_a_player_has_the_player_of_fixed_rules(self):
+        study = self.study("")
+        self.assertEqual(study.players, (players.Player("stage_model"),))
+        game = virtual_games.games_of(study, 1, study.players)[0][0]
+        self.assertEqual(set(virtual_games.request(study, game)), {"game", "seed", "limit_s", "profile"})
+        row = virtual_games.row(study, game, RESULT)
+        self.assertEqual((row["participant_id"], row["player"], row["failed_checks"]), ("player", "stage_model", ""))
+
+    def test_a_study_names_players_of_a_population_and_every_one_plays_every_condition(self):
+        study = self.study('<player name="observer" numbers="0-2 7" population="5" practice="20" checks="count"/><player name="stage_model"/>')
+        self.assertEqual([p.name for p in study.players], ["observer:0", "observer:1", "observer:2", "observer:7", "stage_model"])
+        self.assertEqual(study.checks, "count")
+        chunks = virtual_games.games_of(study, 2, study.players)
+        plays = [(g.player.name, g.condition.id) for chunk in chunks for g in chunk]
+        self.assertEqual(len(plays), 2 * 5 * 3)
+        self.assertEqual(len(set(plays)), 5 * 3)
+        self.assertEqual([g.number for chunk in chunks for g in chunk], list(range(1, 31)))
+        request = virtual_games.request(study, chunks[0][0])
+        self.assertEqual((request["player"], request["population"], request["practice"], request["checks"]), ("observer:0", 5, 20, "skip"))
+        row = virtual_games.row(study, chunks[0][0], RESULT)
+        self.assertEqual(row["player"], "observer:0 of population 5, 20 actions of practice")
+        self.assertIsNone(trial_table.wrong(row))
+
+    def test_seeds_do_not_depend_on_the_player_and_with_common_starts_not_on_the_condition(self):
+        for starts, seeds in (("own", 3), ("common", 1)):
+            study = self.study('<player name="observer" numbers="0-3"/>', limit=('limit="30s"', f'limit="30s" starts="{starts}"'))
+            found = {g.seed(study) for chunk in virtual_games.games_of(study, 1, study.players) for g in chunk}
+            self.assertEqual(len(found), seeds)
+
+    def test_wrong_players_are_refused_with_the_line(self):
+        for elements in ('<player name="observer" numbers="3-1"/>', '<player name="observer" numbers="a"/>', '<player name="observer" numbers="1 1"/>',
+                         '<player name="observer" numbers="0-4000"/>', '<player name="stage_model" numbers="1"/>', '<player name="stage_model" practice="3"/>',
+                         '<player name="observer"/><player name="observer"/>', '<player name="robot"/>', '<player name="observer" checks="maybe"/>',
+                         '<player name="observer" numbers="1" checks="count"/><player name="observer" numbers="2" checks="require"/>'):
+            with self.assertRaisesRegex(Refusal, r"who\.xml:7: "):
+                self.study(elements)
+        tap = STUDY.replace('task="game"', 'task="tap"').replace("<nothing/>", '<asynchrony between="audio visual" levels="0ms"/>').replace(
+            '<factor modality="visual" operator="delay" levels="100ms 300ms"/>', "").replace("performance", "synchrony")
+        (self.folder / "tap.xml").write_text(tap.replace("PLAYERS", '<player name="observer"/>'), encoding="utf-8")
+        with self.assertRaisesRegex(Refusal, "plays games"):
+            study_file.read(str(self.folder / "tap.xml"))
+
+    def checked(self, rule, failing):
+        with mock.patch.object(players, "failing", side_effect=lambda player: failing.get(player.number, ())):
+            return players.checked(players.several("observer", "0-3", 1, 0), rule, self.said.append)
+
+    def test_a_player_that_fails_a_check_is_refused_left_out_or_counted_and_named(self):
+        self.said = []
+        with self.assertRaisesRegex(Refusal, "observer:2 of population 1 fails the checks 2 3 and is not asked"):
+            self.checked("require", {2: (2, 3)})
+        self.assertEqual([p.number for p in self.checked("leave_out", {2: (2, 3)})], [0, 1, 3])
+        self.assertIn("1 of 4 players fail a check and are not asked: observer:2: 2 3", self.said)
+        counted = self.checked("count", {2: (2, 3)})
+        self.assertEqual([p.verdict() for p in counted], ["none", "none", "2 3", "none"])
+        with self.assertRaisesRegex(Refusal, "nobody to ask"):
+            self.checked("leave_out", dict.fromkeys(range(4), (1,)))
+
+    def test_the_typical_person_and_the_player_of_fixed_rules_have_no_checks_to_run(self):
+        with mock.patch.object(players, "failing", side_effect=AssertionError):
+            found = players.checked([players.Player("observer"), players.Player()], "require")
+        self.assertEqual([p.verdict() for p in found], ["", ""])
+
+    def test_the_command_line_of_a_sweep_chooses_the_players(self):
+        study = self.study('<player name="observer" numbers="0-7" checks="leave_out"/>')
+        with mock.patch.object(players, "failing", return_value=()):
+            asked = lambda *words: sweep_main.players_of(sweep_main.parsed(["s", "--games", "1", "--out", "o", *words]), study)
+            self.assertEqual(len(asked()), 8)
+            self.assertEqual([p.number for p in asked("--players", "3")], [0, 1, 2])
+            self.assertEqual([p.name for p in asked("--player", "stage_model")], ["stage_model"])
+            self.assertEqual([(p.name, p.population, p.practice) for p in asked("--player", "observer:4-5", "--population", "9", "--practice", "20")],
+                             [("observer:4", 9, 20), ("observer:5", 9, 20)])
+            for words in (["--player", "robot"], ["--player", "observer:x"], ["--population", "3"], ["--player", "stage_model", "--practice", "3"]):
+                with self.assertRaises(Refusal):
+                    asked(*words)
+
+    def test_a_resumed_sweep_has_the_players_of_its_begin_and_an_old_one_those_of_fixed_rules(self):
+        study = self.study("")
+        asked = [players.Player("observer:3", 2, 5, ()), players.Player("observer:4", 2, 5, (2, 3))]
+        SweepFolder.begin(self.folder / "new", study, 2, asked)
+        self.assertEqual(SweepFolder(self.folder / "new").players, asked)
+        text = (self.folder / "new" / "sweep.json").read_text(encoding="utf-8")
+        (self.folder / "new" / "sweep.json").write_text(text[:text.index(',\n "players"')] + "\n}\n", encoding="utf-8")
+        self.assertEqual(SweepFolder(self.folder / "new").players, [players.Player()])
+        (self.folder / "new" / "sweep.json").write_text(text.replace("observer:3", "robot"), encoding="utf-8")
+        with self.assertRaisesRegex(Refusal, "holds no sweep"):
+            SweepFolder(self.folder / "new")
+
+    def test_results_name_their_players_and_those_that_fail_a_check(self):
+        study = self.study('<player name="observer" numbers="0-4"/>')
+        def found(those):
+            return trials.of_rows([virtual_games.row(study, game, RESULT) for chunk in virtual_games.games_of(study, 1, those) for game in chunk])
+        self.assertEqual(found([players.Player()]).observer(), "simulated (stage_model)")
+        self.assertEqual(found([players.Player("observer:1", failed=()), players.Player("observer:2", failed=(3,))]).observer(),
+                         "simulated (observer:1 of population 1, observer:2 of population 1; 1 of them fail a check)")
+        self.assertEqual(found(study.players).observer(), "simulated (5 players, observer:0 of population 1 to observer:4 of population 1)")
+        self.assertEqual(len(found(study.players).participants()), 5)
+
+    def test_a_live_session_has_one_player_of_the_first_population(self):
+        with mock.patch.object(players, "failing", return_value=()):
+            self.assertEqual(games.live_player(self.study('<player name="observer" numbers="3"/>'), print).name, "observer:3")
+        for elements in ('<player name="observer" numbers="0-3"/>', '<player name="observer" numbers="3" population="2"/>', '<player name="observer" practice="2"/>'):
+            with self.assertRaises(Refusal):
+                games.live_player(self.study(elements), print)
+
+    def test_the_checks_of_a_player_are_read_from_the_table_of_observer_players(self):
+        program = self.folder / "observer_players"
+        program.write_text("#!/bin/sh\necho player,check 1,check 2,check 3,admitted\necho $3,pass,FAIL,FAIL,no\necho failed,0,1,1,0 of 1 admitted\n", encoding="utf-8")
+        program.chmod(0o755)
+        with mock.patch.object(players, "PROGRAM", program):
+            self.assertEqual(players.failing(players.Player("observer:3")), (2, 3))
+        program.write_text("#!/bin/sh\necho no >&2\nexit 1\n", encoding="utf-8")
+        with mock.patch.object(players, "PROGRAM", program), self.assertRaisesRegex(Refusal, "does not check observer:3"):
+            players.failing(players.Player("observer:3"))
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
