@@ -2,7 +2,7 @@
 
 int main(int argc, char** argv) { return tactus::run_tests(argc, argv); }
 
-// What the sanitizers of a test program leave out: memory that libraries of the system keep until the process ends.
+// The leak sanitizer does not report memory that libraries of the system keep until the process ends.
 #if defined(__SANITIZE_ADDRESS__)
 
 extern "C" {

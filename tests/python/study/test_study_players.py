@@ -93,7 +93,7 @@ class Players(unittest.TestCase):
         self.assertIn("1 of 4 players fail a check and are not asked: observer:2: 2 3", self.said)
         counted = self.checked("count", {2: (2, 3)})
         self.assertEqual([p.verdict() for p in counted], ["none", "none", "2 3", "none"])
-        with self.assertRaisesRegex(Refusal, "nobody to ask"):
+        with self.assertRaisesRegex(Refusal, "no game can be played"):
             self.checked("leave_out", dict.fromkeys(range(4), (1,)))
 
     def test_the_typical_person_and_the_player_of_fixed_rules_have_no_checks_to_run(self):
