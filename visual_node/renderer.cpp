@@ -96,9 +96,13 @@ sync::LoadedScene NodeRenderer::load(const sync::SceneReceiver& scenes, const Se
   lock_.load(*scene_, settings);
   const sync::Status preparing{node_health_t::WAITING, "prepares the pictures of the scene"};
   host().node().set_state(preparing.state, preparing.text);
-  render_output_.load(view, composer_.frame(host().clock(), 0).list, settings, [this] {
+  const DrawList sample = composer_.frame(host().clock(), 0).list;
+  const auto meanwhile = [this] {
     if (!log_) host().node().heartbeat();
-  });
+  };
+  render_output_.load(view, sample, settings, meanwhile);
+  // The pictures of a log do not depend on the time that they take.
+  if (host().live()) render_output_.start_quality(sample, sync::host_now, meanwhile);
   start_outputs(view, settings);
   return {.rate_Hz = settings.rate_Hz,
           .output_latency = sync::from_seconds(1 / settings.rate_Hz) + FrameComposer::kInitialFlashTime,

@@ -9,6 +9,15 @@ QualityLadder::QualityLadder(int steps, Nanoseconds budget, int calm_ticks)
   ratio_.fill(1);
 }
 
+void QualityLadder::start(std::span<const Nanoseconds> costs) {
+  const std::size_t known = std::min(costs.size(), static_cast<std::size_t>(steps_));
+  std::size_t step = 0;
+  while (step + 1 < known && too_long(costs[step])) ++step;
+  for (std::size_t i = 0; i + 1 < known; ++i)
+    ratio_[i] = std::max(1.0, to_seconds(costs[i]) / std::max(to_seconds(costs[i + 1]), 1e-9));
+  switch_to(static_cast<int>(step));
+}
+
 void QualityLadder::add(Nanoseconds used) {
   used_[count_ % kWindow] = used;
   ++count_;
@@ -53,9 +62,9 @@ void QualityLadder::switch_to(int to) {
   fits_ = spare_ = 0;
 }
 
-bool QualityLadder::overloaded() const {
-  return to_seconds(quartile(count_ < kWindow ? 2 : 3)) > kHigh * to_seconds(budget_);
-}
+bool QualityLadder::too_long(Nanoseconds used) const { return to_seconds(used) > kHigh * to_seconds(budget_); }
+
+bool QualityLadder::overloaded() const { return too_long(quartile(count_ < kWindow ? 2 : 3)); }
 
 Nanoseconds QualityLadder::quartile(std::size_t quarters) const {
   auto sorted = used_;

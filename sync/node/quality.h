@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "sync/time/time.h"
 
@@ -37,11 +38,16 @@ class QualityLadder {
   // spare after which a better step is considered.
   QualityLadder(int steps, Nanoseconds budget, int calm_ticks = kCalmTicks);
 
+  // Starts at the best step that is not overloaded by its measured cost, or at the cheapest measured one. costs: the time of a tick at the
+  // steps 0, 1, ...; may end early; further ones are ignored. Call it before the first tick.
+  void start(std::span<const Nanoseconds> costs);
   // Once a tick.
   void add(Nanoseconds used);
   // The step to render with, 0 .. steps - 1; 0: full quality.
   int step() const { return step_; }
   int steps() const { return steps_; }
+  // Above the share of the budget at which a step is left.
+  bool too_long(Nanoseconds used) const;
 
  private:
   // The duration that this number of quarters of the ticks in the window did not exceed.

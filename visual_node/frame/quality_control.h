@@ -1,6 +1,7 @@
 // Selects the step of the quality ladder for the next picture: the value of the setting, or by the time used. Pure.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "sync/node/quality.h"
@@ -17,6 +18,10 @@ class QualityControl {
   static constexpr int steps() { return static_cast<int>(kQualities.size()); }
   const Quality& quality() const { return kQualities[static_cast<std::size_t>(step())]; }
 
+  // Selects the first step by the measured times of pictures at the steps 0, 1, ..., unless the setting pins it.
+  void start(std::span<const sync::Nanoseconds> costs) { ladder_.start(costs); }
+  // True when a picture of this time makes a step too slow.
+  bool too_long(sync::Nanoseconds used) const { return ladder_.too_long(used); }
   // Adds the time for which a picture of that step kept the loop busy.
   void add(sync::Nanoseconds used) { ladder_.add(used); }
   // One sentence when the step has changed since the last call, else empty.

@@ -1,5 +1,6 @@
 #include "visual_node/gl/render_output.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -68,6 +69,33 @@ void RenderOutput::load(const SceneView& view, const DrawList& sample, const Set
   rate_.restart();
   loop_rate_Hz_ = s.rate_Hz;
   halves_ = s.stereo == "quad_buffer";
+}
+
+void RenderOutput::start_quality(const DrawList& sample, const std::function<sync::HostTime()>& clock,
+                                 const std::function<void()>& meanwhile) {
+  if (!draws()) return;
+  const sync::HostTime begin = clock();
+  std::vector<sync::Nanoseconds> costs;
+  for (const Quality& quality : kQualities) {
+    std::vector<sync::Nanoseconds> taken;
+    renderer_->set_quality(quality);
+    do {
+      const sync::HostTime from = clock();
+      renderer_->draw_scene(sample);
+      finish();
+      renderer_->draw_flashes_and_overlay(sample);
+      finish();
+      taken.push_back(clock() - from);
+      meanwhile();
+    } while (taken.size() < kTimings && clock() - begin < kTimedFor);
+    std::nth_element(taken.begin(), taken.begin() + static_cast<std::ptrdiff_t>(taken.size() / 2), taken.end());
+    costs.push_back(taken[taken.size() / 2]);
+    if (!quality_.too_long(costs.back())) break;
+    if (clock() - begin < kTimedFor) continue;
+    costs.resize(kQualities.size(), costs.back());  // much too slow: the cheapest one
+    break;
+  }
+  quality_.start(costs);
 }
 
 void RenderOutput::draw_scene(const DrawList& list, const sync::OutputValues& output) {

@@ -46,6 +46,11 @@ class RenderOutput {
   void load(
       const SceneView& view, const DrawList& sample, const Settings& settings,
       const std::function<void()>& meanwhile = [] {});
+  // Selects the first quality by the times of pictures of the loaded scene, so that the first second of a world misses no picture
+  // while the quality is found. Draws kTimings pictures for each step until one is fast enough; kTimedFor in all at most. clock: of the host.
+  static constexpr int kTimings = 5;  // design: the median ignores two outliers
+  static constexpr sync::Nanoseconds kTimedFor{1'000'000'000};  // design
+  void start_quality(const DrawList& sample, const std::function<sync::HostTime()>& clock, const std::function<void()>& meanwhile = [] {});
   // True when the tick at `now` shows a new picture, at the frame rate of the degraded output.
   bool due(sync::HostTime now, const sync::OutputValues& output) {
     return rate_.due(now, output.value("frame_rate"), loop_rate_Hz_);

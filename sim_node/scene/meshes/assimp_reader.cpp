@@ -1,6 +1,7 @@
 #include "sim_node/scene/meshes/assimp_reader.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -8,8 +9,11 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <fstream>
+#include <iterator>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "sim_node/scene/meshes/assimp_reason.h"
 #include "sim_node/scene/meshes/collada_size.h"
@@ -29,7 +33,9 @@ class BoundedFiles : public Assimp::DefaultIOSystem {
       : main_(std::move(main)), readable_(readable), outside_(outside) {}
   bool Exists(const char* file) const override { return may_open(file) && DefaultIOSystem::Exists(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    return may_open(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    if (!may_open(file)) return nullptr;
+    Assimp::IOStream* without = open_without_mark(file);
+    return without ? without : DefaultIOSystem::Open(file, mode);
   }
 
  private:
@@ -46,6 +52,18 @@ class BoundedFiles : public Assimp::DefaultIOSystem {
     return true;
   } catch (const std::runtime_error&) {
     return false;
+  }
+
+  // Editors begin a text with the byte order mark of UTF-8. The readers of OBJ and MTL would lose its first line. Null: the file has no mark.
+  static Assimp::IOStream* open_without_mark(const char* file) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    std::ifstream in(file, std::ios::binary);
+    std::string begin(kMark.size(), '\0');
+    if (!in.read(begin.data(), static_cast<std::streamsize>(begin.size())) || begin != kMark) return nullptr;
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    auto copy = std::make_unique<std::uint8_t[]>(text.size());
+    std::ranges::copy(text, copy.get());
+    return new Assimp::MemoryIOStream(copy.release(), text.size(), true);  // both are owned by the importer
   }
 
   std::filesystem::path main_;

@@ -107,10 +107,17 @@ void SdfFiles::parse(Document& document, const std::string& included_by) {
   if ((parts_ += parts.parts) > kMaxParts)
     throw std::runtime_error(document.source.shown + ": the files of the scene have more than " +
                              std::to_string(kMaxParts) + " elements, attributes and comments: simplify the scene");
+  if (const std::string_view encoding = sdf::other_encoding(text); !encoding.empty())
+    throw std::runtime_error(sdf::where(document.source, 1) + ": this is " + std::string(encoding) + " and not UTF-8" + included_by +
+                             ": save it as UTF-8");
   tinyxml2::XMLDocument& xml = *document.xml;
   if (xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     throw std::runtime_error(sdf::where(document.source, xml.ErrorLineNum()) + ": this is not well-formed XML" +
                              included_by + ": " + sync::xml_reason(xml));
+  for (const tinyxml2::XMLNode* node = xml.FirstChild(); node; node = node->NextSibling())
+    if (node->ToUnknown())
+      sdf::add_warning(warnings_, sdf::where(document.source, node->GetLineNum()) +
+                                      ": <!DOCTYPE> has no effect: its entities are not replaced, write them out");
   const tinyxml2::XMLElement* root = xml.RootElement();
   if (!root || std::string(root->Value()) != "sdf")
     throw std::runtime_error(sdf::where(document.source, root ? root->GetLineNum() : 1) + ": " + root_sentence(root) +

@@ -46,4 +46,14 @@ XmlCount count_xml(std::string_view text) {
   return count;
 }
 
+std::string_view other_encoding(std::string_view text) {
+  using namespace std::string_view_literals;
+  // Byte order marks, and "<" without one (XML 1.0, appendix F); the longer ones first.
+  for (const std::string_view begin : {"\xFF\xFE\0\0"sv, "\0\0\xFE\xFF"sv, "<\0\0\0"sv, "\0\0\0<"sv})
+    if (text.starts_with(begin)) return "UTF-32";
+  for (const std::string_view begin : {"\xFF\xFE"sv, "\xFE\xFF"sv, "<\0"sv, "\0<"sv})
+    if (text.starts_with(begin)) return "UTF-16";
+  return {};
+}
+
 }  // namespace tactus::sim::sdf

@@ -16,4 +16,7 @@ struct XmlCount {
 // Linear in the size of the text. A file that is not well-formed has any count; tinyxml2 refuses it.
 XmlCount count_xml(std::string_view text);
 
+// The name of the encoding of a text that begins as no XML in UTF-8 can: "UTF-16" or "UTF-32"; "": it may be UTF-8.
+std::string_view other_encoding(std::string_view text);
+
 }  // namespace tactus::sim::sdf

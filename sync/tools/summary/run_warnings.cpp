@@ -12,16 +12,27 @@ void RunWarnings::observe(const node_health_t& report, HostTime now) {
   node.expected_events = report.expected_events;
   node.ready = report.state != node_health_t::WAITING;
   node.reason = report.status_text.substr(0, report.status_text.find(';'));  // a note ends with the scheduling of the process
-  const bool beginning = !begin_seen_ || now - begin_ <= kBeginning;
-  if (!first && beginning && begin_seen_ && report.header.incarnation != node.incarnation) node.same_incarnation = false;
-  node.incarnation = report.header.incarnation, node.missed = report.missed_ticks;
-  if (beginning) node.missed_after = report.missed_ticks;
+  count_missed(node, report, first, now);
   if (first && begin_seen_) node.late = true, node.late_reason = "it started later";
   if (!world_seen_ || now - last_world_ > kWorldSilent) return;
   ++node.reports;
   if (report.state != node_health_t::OUTPUT_LOST) return;
   ++node.without_output;
   node.output_reason = node.reason;
+}
+
+void RunWarnings::count_missed(Node& node, const node_health_t& report, bool first, HostTime now) {
+  const bool again = !first && report.header.incarnation != node.incarnation;
+  node.incarnation = report.header.incarnation, node.missed = report.missed_ticks, node.last = now;
+  if (!begin_seen_) {
+    node.missed_at.fill(node.missed);
+    return;
+  }
+  // A report ends the seconds that are over by less than its own period.
+  for (std::size_t second = kSeconds; second > 0 && now - begin_ <= from_seconds(static_cast<double>(second)) + kReport; --second) {
+    node.missed_at[second] = node.missed;
+    if (again) node.seconds = second - 1;
+  }
 }
 
 void RunWarnings::observe_world(std::int64_t sim_ns, HostTime now) {
@@ -31,16 +42,19 @@ void RunWarnings::observe_world(std::int64_t sim_ns, HostTime now) {
   begin_seen_ = sim_ns <= kBeginWithin_ns;
   if (!begin_seen_) return;
   begin_ = now;
-  for (auto& [name, node] : nodes_) node.missed_before = node.missed_after = node.missed;
+  for (auto& [name, node] : nodes_) node.missed_at.fill(node.missed);
   for (auto& [name, node] : nodes_)
     if (!node.ready) node.late = true, node.late_reason = node.reason;
 }
 
-std::map<std::string, std::int64_t> RunWarnings::missed_in_first_second() const {
-  std::map<std::string, std::int64_t> missed;
+std::map<std::string, std::vector<std::int64_t>> RunWarnings::missed_by_second() const {
+  std::map<std::string, std::vector<std::int64_t>> missed;
   if (!begin_seen_) return missed;
   for (const auto& [name, node] : nodes_)
-    if (node.same_incarnation) missed[name] = std::max<std::int64_t>(0, node.missed_after - node.missed_before);
+    for (std::size_t i = 0; i < node.seconds; ++i) {
+      if (i > 0 && node.last - begin_ < from_seconds(static_cast<double>(i + 1)) - kReport) break;
+      missed[name].push_back(std::max<std::int64_t>(0, node.missed_at[i + 1] - node.missed_at[i]));
+    }
   return missed;
 }
 

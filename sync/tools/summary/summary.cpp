@@ -191,8 +191,8 @@ std::map<std::string, NodeSummary> RunSummary::nodes() const {
     if (const auto steps = quality_.find(name); steps != quality_.end()) node.quality = steps->second;
     node.alive_at_end = now_ - newest <= kAliveWithin;
   }
-  for (const auto& [name, missed] : warnings_.missed_in_first_second())
-    if (out.contains(name)) out[name].missed_first_second = missed;
+  for (const auto& [name, missed] : warnings_.missed_by_second())
+    if (out.contains(name)) out[name].missed_by_second = missed;
   for (const auto& [name, restarts] : options_.restarts)
     if (out.contains(name)) out[name].restarts = std::max(out[name].restarts, restarts);
   return out;

@@ -36,7 +36,7 @@ struct NodeSummary {
   double rate_Hz = 0;
   std::int64_t ticks = 0;
   std::int64_t missed_ticks = 0;
-  std::optional<std::int64_t> missed_first_second;  // of them in the first second of the world; nullopt: not known
+  std::vector<std::int64_t> missed_by_second;  // of them in each of the first seconds of the world; empty: not known
   std::int64_t stale_ticks = 0;
   Histogram tick, wake;
   std::map<std::string, Histogram> input_age;  // by channel, ten times a second

@@ -91,7 +91,7 @@ class TaskFiles(unittest.TestCase):
     def test_a_scene_without_a_tool_is_refused_because_nothing_is_felt(self):
         path = self.folder / "haptic.csv"
         path.write_text("time_s,tool,host_s\n,0,1\n1,1,1\n", encoding="utf-8")
-        with self.assertRaisesRegex(Refusal, "no row of the first tool"):
+        with self.assertRaisesRegex(Refusal, "^the first tool has no row in haptic.csv"):
             touch.columns(path, "host_s")
     def test_a_scene_outside_the_folder_of_the_task_is_refused(self):
         (self.folder / "below").mkdir()

@@ -15,7 +15,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = pathlib.Path(os.environ.setdefault("TACTUS_BIN", str(ROOT / "build" / "dev" / "bin")))
 sys.path[:0] = [str(ROOT / "scripts" / "python"), str(ROOT / "tests" / "measure" / "hands")]
 import known_hands
-from tactus.rerun import comparison, play, recording
+from tactus import refusal
+from tactus.rerun import comparison, play
 
 
 def make_log(folder, hand, scene_text, path, seconds, profile=None):
@@ -49,10 +50,10 @@ class Rerun(unittest.TestCase):
 
     def test_the_reason_of_a_failed_run_is_that_of_the_node_that_ended(self):
         said = "haptic_node: a.xml:1: wrong\nrecorder: run.lcmlog: 38 events\nvirtual_time: 1.1 s in 0.006 s\nvirtual_time: haptic_node ended; see its message above\n"
-        self.assertEqual("haptic_node: a.xml:1: wrong", recording.reason_of(said))
-        self.assertEqual("replay: no log", recording.reason_of("a warning\nreplay: no log\n"))
-        self.assertEqual("", recording.reason_of(""))
-        self.assertEqual("virtual_time: x ended; see its message above", recording.reason_of("virtual_time: x ended; see its message above"))
+        self.assertEqual("haptic_node: a.xml:1: wrong", refusal.reason_of(said))
+        self.assertEqual("replay: no log", refusal.reason_of("a warning\nreplay: no log\n"))
+        self.assertEqual("", refusal.reason_of(""))
+        self.assertEqual("virtual_time: x ended; see its message above", refusal.reason_of("virtual_time: x ended; see its message above"))
 
     def test_the_profile_of_the_log_reproduces_it_and_another_one_gives_the_truth(self):
         hand = known_hands.hand("stylus")

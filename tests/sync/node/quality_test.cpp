@@ -149,3 +149,38 @@ TEST_CASE("A ladder with one step stays on it, and an invalid number of steps is
     CHECK(ladder.steps() == std::clamp(steps, 1, QualityLadder::kMaxSteps));
   }
 }
+
+TEST_CASE("A ladder that starts with measured costs is at the step that the same costs would lead it to") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> full(0.1, 6), ratio(1, 3);
+  for (int trial = 0; trial < 200; ++trial) {
+    const double f = full(random), r = ratio(random);
+    std::vector<Nanoseconds> costs;
+    for (int step = 0; step < kSteps; ++step) costs.push_back(from_seconds(share(f, r, step) * to_seconds(kBudget)));
+    Ticking found, started;
+    found.share_of_budget = started.share_of_budget = [&](int step, int) { return share(f, r, step); };
+    found.run(30);
+    started.ladder.start(costs);
+    INFO("full " << f << " ratio " << r);
+    CHECK(started.ladder.step() == found.ladder.step());
+    started.run(30);
+    CHECK(started.changes == 0);
+  }
+}
+
+TEST_CASE("A ladder that starts with some costs, none or too many stays within its steps") {
+  for (const std::size_t known : {0u, 1u, 2u, 20u}) {
+    QualityLadder ladder(kSteps, kBudget);
+    ladder.start(std::vector<Nanoseconds>(known, 2 * kBudget));
+    CHECK(ladder.step() == std::clamp(static_cast<int>(known) - 1, 0, kSteps - 1));
+  }
+}
+
+TEST_CASE("A ladder that starts at a cheaper step returns to full quality when the load ends") {
+  Ticking t;
+  t.share_of_budget = [&](int step, int) { return share(0.2, 1.5, step); };
+  t.ladder.start(std::vector<Nanoseconds>(kSteps, 3 * kBudget));
+  REQUIRE(t.ladder.step() == kSteps - 1);
+  t.run((kSteps - 1) * (kCalm * QualityLadder::kTryAfter + kWindow));
+  CHECK(t.ladder.step() == 0);
+}

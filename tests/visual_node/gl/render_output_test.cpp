@@ -125,3 +125,25 @@ TEST_CASE("An OpenGL error in a working context does not count as a lost device"
   CHECK(renderer.wait());
   CHECK(display().loss_reason().empty());
 }
+
+TEST_CASE("The first picture of a world has the quality at which its pictures are fast enough") {
+  for (const auto& [picture_ms, step] : {std::pair{1.0, 0}, std::pair{12.0, 0}, std::pair{14.0, 3}, std::pair{2000.0, 3}}) {
+    OutputFixture f;
+    RenderOutput output(f.settings, false, f.make());
+    output.load(f.view, f.list, f.settings);
+    sync::HostTime now = at_s(1);  // it moves by the time of a picture at each look
+    int meanwhile = 0;
+    output.start_quality(f.list, [&, ms = picture_ms] { return now += sync::from_seconds(1e-3 * ms); }, [&] { ++meanwhile; });
+    INFO(picture_ms << " ms");
+    CHECK(output.quality().step() == step);
+    CHECK(meanwhile > 0);
+    CHECK(meanwhile <= RenderOutput::kTimings * QualityControl::steps());
+  }
+  OutputFixture f;
+  f.settings.quality = "1";
+  RenderOutput output(f.settings, false, f.make());
+  output.load(f.view, f.list, f.settings);
+  sync::HostTime now = at_s(1);
+  output.start_quality(f.list, [&] { return now += sync::from_seconds(0.02); });
+  CHECK(output.quality().step() == 1);
+}

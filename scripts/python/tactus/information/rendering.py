@@ -10,7 +10,7 @@ from tactus import environment
 from tactus.information import pictures, sound, touch
 from tactus.log.sound_onsets import clock_of
 from tactus.paths import BIN, remedy
-from tactus.refusal import Refusal
+from tactus.refusal import Refusal, reason_of
 from tactus.tables import read_rows
 
 NODES = ("haptic_node", "audio_node", "visual_node", "thermal_node")
@@ -34,8 +34,7 @@ def output(words):
     except subprocess.TimeoutExpired:
         raise Refusal(f"{os.path.basename(words[0])} took more than {LIMIT_S} s; shorten the task") from None
     if done.returncode != 0:
-        lines = (done.stderr or done.stdout).strip().splitlines() or ["no output"]
-        raise Refusal(f"{os.path.basename(words[0])} ended with status {done.returncode}: {lines[-1]}")
+        raise Refusal(reason_of(done.stderr or done.stdout) or f"{os.path.basename(words[0])} ended with status {done.returncode} without a message")
     return done.stderr
 
 

@@ -1,5 +1,6 @@
 """Features of touch and warmth that a run presented: force, direction, stiffness, vibration, place of the hand, heat flow."""
 import math
+import os
 
 import numpy as np
 
@@ -15,7 +16,7 @@ def columns(path, *names):
     """Columns of the first tool in a table of touch or warmth, with rows of the world only."""
     rows = [row for row in read_rows(path) if row["time_s"] and row["tool"] == "0"]
     if not rows:
-        raise Refusal(f"{path} has no row of the first tool, so nothing is felt; give a scene with a <tactus:tool>")
+        raise Refusal(f"the first tool has no row in {os.path.basename(path)}, so nothing is felt; give a scene with a <tactus:tool>")
     return [np.array([float(row[name]) for row in rows]) for name in names]
 
 

@@ -8,7 +8,7 @@ import time
 from tactus.launch import arguments, cluster, delays, privileges
 from tactus.launch.results import WORLD_STOPPED, git_commit, summarise
 from tactus.paths import remedy
-from tactus.refusal import Refusal
+from tactus.refusal import Refusal, reason_of
 from tactus.terminal import report_error, report_run
 
 POLL_S = 0.1
@@ -82,9 +82,9 @@ def play(plan, plan_file, stop, kept):
 
 
 def reason(said):
-    """The line of an output that names why it ended: that of a world that stopped, otherwise the last one."""
+    """The line of an output that names why it ended: that of a world that stopped, otherwise that of the node that ended."""
     lines = said.strip().split("\n")
-    return next((line for line in reversed(lines) if WORLD_STOPPED in line), lines[-1])
+    return next((line for line in reversed(lines) if WORLD_STOPPED in line), reason_of(said))
 
 
 def forward_output(output):

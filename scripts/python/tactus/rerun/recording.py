@@ -3,7 +3,6 @@ import dataclasses
 import json
 import os
 import pathlib
-import re
 import subprocess
 import tempfile
 
@@ -14,11 +13,10 @@ from tactus import own_files, tables
 from tactus.log import description
 from tactus.log.log_tables import LogTables
 from tactus.paths import BIN, SCENES, remedy
-from tactus.refusal import Refusal
+from tactus.refusal import Refusal, reason_of
 
 CHANNELS = "LOG_INFO|DEGRADATION|PLAYOUT|SIM_COMMAND|DEVICE_FORCE"
 SHORTEST_S, LONGEST_S = 1.0, 1800.0  # design: a contact with its approach; the size of the motion file
-ENDED = re.compile(r"virtual_time: (\S+) ended; see its message above")
 LOST = ("none", "stale")  # status of the touch model without a world
 BEFORE_S = 0.3     # design: the hand before the world, from which its motion at the start follows
 GAP_S = 0.02       # design: longer gaps of the record are reported
@@ -43,13 +41,6 @@ class Recording:
     scene: str           # file name in the log
     seed: int
     gap_s: float         # longest gap between two ticks
-
-
-def reason_of(said):
-    """The line of an output that names why its program ended: the last one; of virtual_time, the last one of the node that it names."""
-    lines = said.strip().split("\n")
-    named = ENDED.fullmatch(lines[-1])
-    return next((line for line in reversed(lines) if named and line.startswith(f"{named[1]}: ")), lines[-1])
 
 
 def run_program(words):

@@ -75,3 +75,12 @@ TEST_CASE("Missing normals are the mean of the adjacent faces") {
   CHECK((roof.normals[0] - Vector3d::UnitZ()).norm() < 1e-12);  // the ridge
   CHECK((roof.normals[2] - Vector3d(1, 0, 1).normalized()).norm() < 1e-12);
 }
+
+TEST_CASE("A byte order mark changes no mesh, also when its first line is a vertex") {
+  SceneFile file;
+  file.write("plain.obj", std::string(kObj).substr(8));  // begins with a vertex
+  file.write("marked.obj", "\xEF\xBB\xBF" + std::string(kObj).substr(8));
+  const TriangleMesh plain = read_mesh(file.folder() / "plain.obj", "", false, kOne), marked = read_mesh(file.folder() / "marked.obj", "", false, kOne);
+  CHECK(plain.indices == marked.indices);
+  CHECK(plain.vertices == marked.vertices);
+}

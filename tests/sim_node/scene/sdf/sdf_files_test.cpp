@@ -153,3 +153,27 @@ TEST_CASE("A file with only a model is a world of that model") {
   CHECK(w.name == "ball");
   CHECK(w.bodies.size() == 1);
 }
+
+TEST_CASE("A scene in UTF-16 or UTF-32 is refused by the name of its encoding") {
+  const std::string text = world("");
+  for (const int bytes : {2, 4})
+    for (const bool big : {false, true})
+      for (const bool mark : {false, true}) {
+        std::string wide;
+        const auto add = [&](unsigned character) {
+          for (int i = 0; i < bytes; ++i) wide += static_cast<char>(character >> 8 * (big ? bytes - 1 - i : i) & 0xff);
+        };
+        if (mark) add(0xfeff);
+        for (const char c : text) add(static_cast<unsigned char>(c));
+        SceneFile file(wide);
+        INFO(bytes << (big ? " bytes, big" : " bytes, little") << (mark ? ", mark" : ""));
+        CHECK(file.load_error() == "scene.sdf:1: this is UTF-" + std::to_string(8 * bytes) + " and not UTF-8: save it as UTF-8");
+      }
+}
+
+TEST_CASE("Entities of a scene are not replaced, which a warning with the line says") {
+  SceneFile file("<?xml version=\"1.0\"?>\n<!DOCTYPE sdf [<!ENTITY a SYSTEM \"file:///etc/passwd\">]>\n<sdf version=\"1.9\"><world name=\"w\">&a;</world></sdf>");
+  file.load();
+  REQUIRE(file.warnings.size() == 1);
+  CHECK(file.short_warnings()[0] == "scene.sdf:2: <!DOCTYPE> has no effect: its entities are not replaced, write them out");
+}

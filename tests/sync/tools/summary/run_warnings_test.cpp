@@ -67,27 +67,37 @@ TEST_CASE("A process that starts after the world is named, unless the log begins
   }
 }
 
-TEST_CASE("The ticks that a node misses in the first second of the world are counted apart from those before and after") {
+TEST_CASE("The ticks that a node misses in each of the first seconds of the world are counted apart from those before and after") {
   RunLog log;
   std::int64_t missed = 0;
-  for (int ms = 0; ms <= 6000; ms += 100) {
+  for (int ms = 0; ms <= 8000; ms += 100) {
     if (ms >= 3000) world(log, ms, ms + 80, ms - 3000);
-    // 40 while it prepares, 2 in the first second, 7 later.
-    missed += ms == 1000 ? 40 : ms == 3500 ? 2 : ms == 4500 ? 7 : 0;
+    // 40 while it prepares, 2 in the first second, 7 in the second one, 0 in the third, 5 later.
+    missed += ms == 1000 ? 40 : ms == 3500 ? 2 : ms == 4500 ? 7 : ms == 7000 ? 5 : 0;
     log.health("visual_node", "visual", ms, 60, 1, ms < 2800 ? node_health_t::WAITING : node_health_t::RUNNING, missed);
   }
   const NodeSummary n = log.summary().nodes().at("visual_node");
-  CHECK(n.missed_ticks == 49);
-  REQUIRE(n.missed_first_second);
-  CHECK(*n.missed_first_second == 2);
-  CHECK_THAT(to_text(log.summary()), Contains("2 of the missed in the first second of the world"));
+  CHECK(n.missed_ticks == 54);
+  CHECK(n.missed_by_second == std::vector<std::int64_t>{2, 7, 0});
+  CHECK_THAT(to_text(log.summary()), Contains("2 of the missed in the first second of the world, 7 in the second, 0 in the third"));
   CHECK_THAT(to_json(log.summary()), Contains("\"missed_first_second\": 2"));
   RunLog midway;
   for (int ms = 0; ms <= 2000; ms += 100) {
     world(midway, ms, ms + 80, 5000 + ms);
     midway.health("visual_node", "visual", ms, 60, 1, node_health_t::RUNNING, ms);
   }
-  CHECK_FALSE(midway.summary().nodes().at("visual_node").missed_first_second);
+  CHECK(midway.summary().nodes().at("visual_node").missed_by_second.empty());
+}
+
+TEST_CASE("A log that ends early, and a node that starts again, have the missed ticks of their whole seconds only") {
+  RunLog log;
+  for (int ms = 0; ms <= 2500; ms += 100) {
+    world(log, ms, ms + 80, ms);
+    log.health("visual_node", "visual", ms, 60, 1, node_health_t::RUNNING, ms / 100);
+    log.health("audio_node", "audio", ms, 60, ms < 1500 ? 1 : 2, node_health_t::RUNNING, ms < 1500 ? 3 : 0);
+  }
+  CHECK(log.summary().nodes().at("visual_node").missed_by_second.size() == 2);
+  CHECK(log.summary().nodes().at("audio_node").missed_by_second.size() == 1);
 }
 
 TEST_CASE("A silent modality is named when events happened, and is not when a profile silences it") {
