@@ -118,6 +118,22 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t) + 0.004).margin(1e-6));  // 4 ms ahead at 1 m/s
 }
 
+TEST_CASE_METHOD(Fixture, "The status word follows the size and the contrast of texts during a run, and stays in the picture") {
+  const Frame usual = frame(0);
+  REQUIRE(usual.list.overlay.size() > 1);
+  Settings changed;
+  changed.text_size = 2, changed.text_contrast = "high";
+  composer.change(changed);
+  const Frame twice = frame(16'000'000);
+  REQUIRE(twice.list.overlay.size() == usual.list.overlay.size());
+  CHECK(twice.list.overlay[0].height == 2 * usual.list.overlay[0].height);
+  CHECK(twice.list.overlay[0].alpha == 1);
+  CHECK(twice.list.overlay[1].height == 2 * usual.list.overlay[1].height);
+  changed.text_size = 4;
+  composer.change(changed);
+  for (const Rect& r : frame(32'000'000).list.overlay) CHECK(r.x + r.width <= 640);
+}
+
 TEST_CASE_METHOD(Fixture,
                  "Before the scene arrives a frame is dark and shows WAITING") {
   Frame f = frame(0);
