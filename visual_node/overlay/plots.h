@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sync/time/time.h"
+#include "visual_node/frame/text_look.h"
 #include "visual_node/overlay/plot_spec.h"
 #include "visual_node/scene_view/draw_list.h"
 
