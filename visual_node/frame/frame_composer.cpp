@@ -105,8 +105,13 @@ void FrameComposer::latch(Frame& frame, sync::HostTime now, sync::Nanoseconds de
   if (settings_.motion_marker == "strip")
     append_motion_marker(frame.list.overlay, static_cast<std::uint32_t>(frame.number & 0xffffff), frame.samples,
                          view_ ? view_->height() : settings_.height / 4 * 4);
-  if (const std::string_view text = word(frame); !text.empty())
-    append_text(frame.list.overlay, text, kTextAt_px, kTextAt_px, kTextSize_px);
+  if (const std::string_view text = word(frame); !text.empty()) {
+    const TextLook look = text_look(settings_.text_contrast, settings_.text_size);
+    const auto width = static_cast<float>(view_ ? view_->width() : settings_.width);
+    float size = look.scaled(kTextSize_px);
+    while (size > 1 && kTextAt_px + text_width(text.size(), size) > width) --size;
+    append_text(frame.list.overlay, text, kTextAt_px, kTextAt_px, size, look);
+  }
 }
 
 void FrameComposer::assess_state(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival) {

@@ -74,6 +74,8 @@ class FrameComposer {
   void change(const Settings& settings) {
     settings_.exposure = settings.exposure;
     settings_.display_gain = settings.display_gain;
+    settings_.text_size = settings.text_size;
+    settings_.text_contrast = settings.text_contrast;
   }
   // Sets the colours of the scene's bodies, as SceneView::tint.
   void tint(std::vector<Eigen::Vector4f> bodies) {

@@ -111,9 +111,13 @@ float text_width(std::size_t letters, float size) {
   return (kGlyphWidth + 1) * size * static_cast<float>(letters) + 3 * size;
 }
 
-void append_text(std::vector<Rect>& overlay, std::string_view text, float x, float y, float size) {
-  overlay.push_back({x, y, text_width(text.size(), size), text_height(size), 0.0f, 0.0f, 0.0f, 0.65f});
-  append_letters(overlay, text, x + 2 * size, y + 2 * size, size, {1.0f, 0.78f, 0.25f});
+void append_text(std::vector<Rect>& overlay, std::string_view text, float x, float y, float size, const TextLook& look) {
+  append_plate(overlay, look.panel, x, y, text_width(text.size(), size), text_height(size));
+  append_letters(overlay, text, x + 2 * size, y + 2 * size, size, look.status);
+}
+
+void append_plate(std::vector<Rect>& overlay, const TextLook::Plate& plate, float x, float y, float width, float height) {
+  overlay.push_back({x, y, width, height, plate.colour.x(), plate.colour.y(), plate.colour.z(), plate.opacity});
 }
 
 void append_letters(std::vector<Rect>& overlay, std::string_view text, float x, float y, float size,

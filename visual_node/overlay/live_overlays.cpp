@@ -7,6 +7,7 @@
 
 #include "sync/bus/decode.h"
 #include "visual_node/frame/motion_marker.h"
+#include "visual_node/frame/text.h"
 #include "visual_node/overlay/contact_strokes.h"
 
 namespace tactus::visual {
@@ -15,8 +16,8 @@ namespace {
 // Queue length: the messages of a channel between two frames. A state of 1 kHz for a tenth of a second, or two
 // snapshots of 300 contacts.
 constexpr std::size_t kQueueLength = 256;
-// The first line is below the status word of the frame.
-constexpr float kPanelAt_px = 8, kPanelBelow_px = 36;
+// The first line is below the status word of the frame, which is 22 pixels high and begins at 8.
+constexpr float kPanelAt_px = 8, kStatusSize_px = 2, kPanelGap_px = 6;
 
 }  // namespace
 
@@ -35,6 +36,7 @@ std::vector<std::string> LiveOverlays::configure(const Settings& settings) {
     warnings.emplace_back(e.what());
   }
   markers_px_ = marker_height_px(settings.event_marker == "strip", settings.motion_marker == "strip");
+  look_ = text_look(settings.text_contrast, settings.text_size);
   force_scale_m_N_ = static_cast<float>(settings.force_scale_m_N);
   plots_ = Plots(parse_plots(settings.plots, warnings), sync::from_seconds(settings.plot_span_s));
   if (!plots_.empty()) on_.set(Overlay::kPlots);
@@ -124,10 +126,11 @@ void LiveOverlays::append(Frame& frame, PanelData data, sync::HostTime now, int 
   float right = static_cast<float>(picture_width);
   if (on_.on(Overlay::kPlots) && !plots_.empty()) {
     right = plots_left(picture_width);
-    plots_.append(frame.list.overlay, now, picture_width, picture_height - markers_px_);
+    plots_.append(frame.list.overlay, now, picture_width, picture_height - markers_px_, look_);
   }
-  append_lines(frame.list.overlay, panel_lines(on_, data), {kPanelAt_px, kPanelBelow_px, right, bottom},
-               text_size(picture_height));
+  const float below = kPanelAt_px + text_height(look_.scaled(kStatusSize_px)) + kPanelGap_px;
+  append_lines(frame.list.overlay, panel_lines(on_, data), {kPanelAt_px, below, right, bottom}, text_size(picture_height, look_),
+               look_);
 }
 
 }  // namespace tactus::visual

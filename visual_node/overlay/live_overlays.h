@@ -55,6 +55,7 @@ class LiveOverlays {
 
   sync::Bus& bus_;
   OverlaySet on_;
+  TextLook look_;
   float force_scale_m_N_ = 0;
   int markers_px_ = 0;  // height of the lower edge that programs read
   Plots plots_{{}, sync::Nanoseconds(1)};

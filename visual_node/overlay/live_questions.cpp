@@ -16,6 +16,7 @@ LiveQuestions::LiveQuestions(sync::Bus& bus, bool at_once)
 
 void LiveQuestions::configure(const Settings& settings) {
   enabled_ = settings.questions;
+  look_ = text_look(settings.text_contrast, settings.text_size);
   markers_px_ = marker_height_px(settings.event_marker == "strip", settings.motion_marker == "strip");
 }
 
@@ -45,16 +46,16 @@ void LiveQuestions::send() {
 // Returns false when the question is not in the picture: it is being typeset, or cannot be drawn.
 bool LiveQuestions::append(Frame& frame, const question_t& m, const TextArea& room) {
   if (is_ascii(m)) {
-    append_question(frame.list.overlay, m, dialog_.number(), room);
+    append_question(frame.list.overlay, m, dialog_.number(), room, look_);
     return true;
   }
-  const QuestionText* text = texts_.find(m, room);
+  const QuestionText* text = texts_.find(m, room, look_.size);
   if (!text) return false;
   if (text->problem.empty()) {
-    append_question(frame.list.overlay, frame.list.labels, m, dialog_.number(), room, *text);
+    append_question(frame.list.overlay, frame.list.labels, m, dialog_.number(), room, *text, look_);
     return true;
   }
-  append_lines(frame.list.overlay, {text->problem}, room, text_size(static_cast<int>(room.bottom - room.y)));
+  append_lines(frame.list.overlay, {text->problem}, room, text_size(static_cast<int>(room.bottom - room.y), look_), look_);
   if (text->problem != last_problem_) new_problem_ = last_problem_ = text->problem;
   return false;
 }

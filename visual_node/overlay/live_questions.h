@@ -45,6 +45,7 @@ class LiveQuestions {
   std::optional<std::string> new_problem_;
   bool enabled_ = true, drawn_ = false;
   int markers_px_ = 0;
+  TextLook look_;
 };
 
 }  // namespace tactus::visual

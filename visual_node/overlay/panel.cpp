@@ -111,7 +111,7 @@ std::vector<std::string> panel_lines(const OverlaySet& on, const PanelData& f) {
 }
 
 float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextArea& room,
-                   float largest) {
+                   float largest, const TextLook& look) {
   float size = std::max(1.0f, largest);
   std::vector<std::string> all = wrapped(lines, letters_in(room.right - room.x, size));
   while (size > 1 && all.size() > lines_in(room.bottom - room.y, size)) {
@@ -123,13 +123,15 @@ float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& l
   for (const std::string& line : all) longest = std::max(longest, line.size());
   if (longest == 0) return room.y;
   const float height = line_step(size) * static_cast<float>(all.size()) + 3 * size;
-  overlay.push_back({room.x, room.y, text_width(longest, size), height, 0, 0, 0, 0.65f});
+  append_plate(overlay, look.panel, room.x, room.y, text_width(longest, size), height);
   for (std::size_t i = 0; i < all.size(); ++i)
     append_letters(overlay, all[i], room.x + 2 * size, room.y + 2 * size + line_step(size) * static_cast<float>(i),
-                   size);
+                   size, look.words);
   return room.y + height + 2 * size;
 }
 
-float text_size(int picture_height) { return static_cast<float>(std::max(1, picture_height / 240)); }
+float text_size(int picture_height, const TextLook& look) {
+  return look.scaled(static_cast<float>(std::max(1, picture_height / 240)));
+}
 
 }  // namespace tactus::visual

@@ -9,6 +9,7 @@
 
 #include "sync/node/modality_endpoint.h"
 #include "sync/resampling/sample_status.h"
+#include "visual_node/frame/text_look.h"
 #include "visual_node/overlay/overlay_set.h"
 #include "visual_node/scene_view/draw_list.h"
 
@@ -53,12 +54,12 @@ struct TextArea {
   float x, y, right, bottom;
 };
 
-// Draws lines on one dark plate at the upper left of the room. largest: pixels for each pixel of a letter, reduced
+// Draws lines on one plate at the upper left of the room. largest: pixels for each pixel of a letter, reduced
 // until all lines fit. Long lines wrap; lines that still do not fit are left out. Returns the y of the next plate.
 float append_lines(std::vector<Rect>& overlay, const std::vector<std::string>& lines, const TextArea& room,
-                   float largest);
+                   float largest, const TextLook& look = {});
 
-// Size of a letter's pixel in a picture of that height: 2 at 640 x 480, more in larger ones.
-float text_size(int picture_height);
+// Size of a letter's pixel in a picture of that height: 2 at 640 x 480, more in larger ones, times the factor of the look.
+float text_size(int picture_height, const TextLook& look = {});
 
 }  // namespace tactus::visual

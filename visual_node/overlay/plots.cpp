@@ -13,7 +13,6 @@ namespace tactus::visual {
 namespace {
 
 using Colour = Eigen::Vector3f;
-const Colour kTitle{0.75f, 0.85f, 1.0f}, kLabel{0.8f, 0.8f, 0.8f}, kLine{0.4f, 1.0f, 0.6f}, kOld{0.6f, 0.6f, 0.6f};
 constexpr float kMargin_px = 6, kPad_px = 3;
 constexpr std::size_t kMaxTextLength = 64;
 // An older value is drawn grey.
@@ -23,10 +22,6 @@ struct Box {  // place of a plot, pixels
   float x, y, width, size;
   float line() const { return (kGlyphHeight + 2) * size; }
 };
-
-void plate(std::vector<Rect>& out, const Box& b, float height) {
-  out.push_back({b.x, b.y, b.width, height, 0, 0, 0, 0.65f});
-}
 
 void fill(std::vector<Rect>& out, float x, float y, float width, float height, const Colour& c, float alpha = 1) {
   out.push_back({x, y, width, height, c.x(), c.y(), c.z(), alpha});
@@ -127,21 +122,21 @@ std::string span(double least, double most, const std::string& unit) {
 
 // Draws the curve of the values, scaled to their lowest and highest value, which are printed below it.
 void append_graph(std::vector<Rect>& out, const Box& b, const ValueHistory& history, const std::string& unit,
-                  sync::HostTime now, float height) {
+                  sync::HostTime now, float height, const TextLook& look) {
   const auto range = history.range(now);
   const float top = b.y + b.line() + kPad_px, left = b.x + kPad_px;
   const float width = b.width - 2 * kPad_px, bottom = top + height;
-  fill(out, left, bottom, width, 1, kLabel, 0.6f);
-  fill(out, left, top, 1, height, kLabel, 0.6f);
+  fill(out, left, bottom, width, 1, look.label, 0.6f);
+  fill(out, left, top, 1, height, look.label, 0.6f);
   const std::string ago = label(-sync::to_seconds(history.span())) + " s", newest = "now";
   const std::string values = range ? span(range->first, range->second, unit) : "";
   // In a narrow picture the range of values has priority over the time labels.
   if (letters(b) >= ago.size() + values.size() + newest.size() + 2) {
-    words(out, b, ago, bottom + kPad_px, kLabel);
-    right_words(out, b, newest, bottom + kPad_px, kLabel);
+    words(out, b, ago, bottom + kPad_px, look.label);
+    right_words(out, b, newest, bottom + kPad_px, look.label);
   }
   if (!range) return;
-  middle_words(out, b, std::string_view(values).substr(0, letters(b)), bottom + kPad_px, kTitle);
+  middle_words(out, b, std::string_view(values).substr(0, letters(b)), bottom + kPad_px, look.title);
   const double least = range->first, most = range->second;
   // A constant value is a line in the middle.
   const auto place = [&](double v) {
@@ -160,14 +155,14 @@ void append_graph(std::vector<Rect>& out, const Box& b, const ValueHistory& hist
     first = false;
     before = s.lowest / 2 + s.highest / 2;
     const float x = left + column * static_cast<float>(ValueHistory::kColumns - 1 - (last - s.number));
-    fill(out, x, place(high) - 1, std::max(1.0f, column), place(low) - place(high) + 2, kLine);
+    fill(out, x, place(high) - 1, std::max(1.0f, column), place(low) - place(high) + 2, look.curve);
   }
-  if (least < 0 && most > 0) fill(out, left, place(0), width, 1, kLabel, 0.4f);
+  if (least < 0 && most > 0) fill(out, left, place(0), width, 1, look.label, 0.4f);
 }
 
 // Draws a bar from zero to the value, on the scale of its recent range.
 void append_bar(std::vector<Rect>& out, const Box& b, double value, const ValueHistory& history,
-                sync::HostTime now, float y) {
+                sync::HostTime now, float y, const TextLook& look) {
   const auto range = history.range(now);
   if (!range || !std::isfinite(value)) return;
   const double least = std::min(0.0, range->first), most = std::max(0.0, range->second);
@@ -177,15 +172,15 @@ void append_bar(std::vector<Rect>& out, const Box& b, double value, const ValueH
                       most > least ? (std::clamp(v, least, most) / 2 - least / 2) / (most / 2 - least / 2) : 0) *
                       width;
   };
-  fill(out, left, y, width, height, kLabel, 0.25f);
+  fill(out, left, y, width, height, look.label, 0.25f);
   const float from = std::min(place(0), place(value)), to = std::max(place(0), place(value));
-  fill(out, from, y, std::max(1.0f, to - from), height, kLine);
+  fill(out, from, y, std::max(1.0f, to - from), height, look.curve);
 }
 
 }  // namespace
 
-void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int width, int height) const {
-  const float size = std::max(1.0f, text_size(height) - 1);
+void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int width, int height, const TextLook& look) const {
+  const float size = look.scaled(std::max(1.0f, text_size(height) - 1));
   Box b{plots_left(width), kMargin_px, 0, size};
   b.width = static_cast<float>(width) - kMargin_px - b.x;
   const float graph_height = 46 * size;
@@ -194,8 +189,8 @@ void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int width, in
     const float body = (graph ? graph_height + 2 * kPad_px : bar ? b.line() + kPad_px : 0) + b.line();
     const float plate_height = b.line() + body + 2 * kPad_px;
     if (b.y + plate_height > static_cast<float>(height)) return;
-    plate(overlay, b, plate_height);
-    words(overlay, b, p.spec.title, b.y + kPad_px, kTitle);
+    append_plate(overlay, look.plot, b.x, b.y, b.width, plate_height);
+    words(overlay, b, p.spec.title, b.y + kPad_px, look.title);
     const std::string unit = p.spec.value.unit();
     const std::string value = !p.newest           ? "nothing yet"
                               : p.newest->empty() ? "(empty)"
@@ -203,9 +198,9 @@ void Plots::append(std::vector<Rect>& overlay, sync::HostTime now, int width, in
                                                   : *p.newest + " " + unit;
     const bool old = !p.newest || now - p.at > kOldAfter;
     const float y = b.y + b.line() + kPad_px;
-    if (graph) append_graph(overlay, b, p.history, unit, now, graph_height);
-    if (bar) append_bar(overlay, b, p.value, p.history, now, y);
-    if (!graph) words(overlay, b, value, bar ? y + b.line() + kPad_px : y, old ? kOld : kLabel);
+    if (graph) append_graph(overlay, b, p.history, unit, now, graph_height, look);
+    if (bar) append_bar(overlay, b, p.value, p.history, now, y, look);
+    if (!graph) words(overlay, b, value, bar ? y + b.line() + kPad_px : y, old ? look.old : look.label);
     b.y += plate_height + kMargin_px;
   }
 }

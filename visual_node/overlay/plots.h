@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sync/time/time.h"
+#include "visual_node/frame/text_look.h"
 #include "visual_node/overlay/plot_spec.h"
 #include "visual_node/scene_view/draw_list.h"
 
@@ -52,7 +53,7 @@ class Plots {
   std::vector<std::string> channels() const;
   void push(const std::string& channel, std::span<const std::uint8_t> bytes, sync::HostTime arrival);
   // Draws the plots from the upper right corner downwards, as many as fit into that width and height.
-  void append(std::vector<Rect>& overlay, sync::HostTime now, int width, int height) const;
+  void append(std::vector<Rect>& overlay, sync::HostTime now, int width, int height, const TextLook& look = {}) const;
 
  private:
   struct Plot {

@@ -10,18 +10,14 @@
 namespace tactus::visual {
 namespace {
 
-const Eigen::Vector3f kWords(1, 1, 1), kKeys(1, 0.78f, 0.25f), kDark(0.05f, 0.06f, 0.08f),
-    kQuiet(0.72f, 0.76f, 0.8f);
-constexpr float kOpacity = 0.88f;    // design: readable over a bright scene
 constexpr float kWidth = 0.9f;       // share of the room
 constexpr float kPadding = 4;        // pixels of a letter, as all lengths below
 constexpr float kChoiceIndent = 10;  // room for the key before the text
 constexpr float kTrack = 22;         // height of a slider with its mark
 constexpr float kChoiceGap = 0.3f;   // before a choice, in lines
 
-void fill(std::vector<Rect>& overlay, float x, float y, float width, float height, const Eigen::Vector3f& c,
-          float alpha = 1) {
-  overlay.push_back({x, y, width, height, c.x(), c.y(), c.z(), alpha});
+void fill(std::vector<Rect>& overlay, float x, float y, float width, float height, const Eigen::Vector3f& c) {
+  overlay.push_back({x, y, width, height, c.x(), c.y(), c.z(), 1});
 }
 
 std::string hint(const question_t& m) {
@@ -67,35 +63,37 @@ float QuestionLayout::height(const std::vector<float>& blocks) const {
 }
 
 void QuestionLayout::draw(std::vector<Rect>& overlay, double number, float x, float y,
-                          const std::vector<float>& blocks, bool mirrored, const DrawBlock& draw_block) const {
-  fill(overlay, x, y, width_, height(blocks), kDark, kOpacity);
+                          const std::vector<float>& blocks, bool mirrored, const TextLook& look,
+                          const DrawBlock& draw_block) const {
+  append_plate(overlay, look.question, x, y, width_, height(blocks));
   const float left = x + kPadding * size_;
   y += kPadding * size_;
-  draw_block(0, left, y, kWords);
+  draw_block(0, left, y, look.words);
   y += blocks[0];
   if (choices_ > 0) y += gap();
   for (std::size_t i = 1; i <= choices_; ++i) {
     y += kChoiceGap * line(size_);
     const float key = mirrored ? left + inner_ - kGlyphWidth * size_ : left;
-    fill(overlay, key - size_, y - size_, (kGlyphWidth + 2) * size_, (kGlyphHeight + 2) * size_, kKeys);
-    append_letters(overlay, std::to_string(i), key, y, size_, kDark);
-    draw_block(i, mirrored ? left : left + kChoiceIndent * size_, y, kWords);
+    fill(overlay, key - size_, y - size_, (kGlyphWidth + 2) * size_, (kGlyphHeight + 2) * size_, look.keys);
+    append_letters(overlay, std::to_string(i), key, y, size_, look.on_keys);
+    draw_block(i, mirrored ? left : left + kChoiceIndent * size_, y, look.words);
     y += blocks[i];
   }
-  if (ends_ > 0) y = slider(overlay, number, left, y + gap(), blocks, draw_block);
+  if (ends_ > 0) y = slider(overlay, number, left, y + gap(), blocks, look, draw_block);
   y += gap();
   for (std::size_t i = 1 + choices_ + ends_; i < blocks.size(); y += blocks[i], ++i)
-    draw_block(i, left, y, kQuiet);
+    draw_block(i, left, y, look.quiet);
 }
 
 float QuestionLayout::slider(std::vector<Rect>& overlay, double number, float left, float y,
-                             const std::vector<float>& blocks, const DrawBlock& draw_block) const {
+                             const std::vector<float>& blocks, const TextLook& look,
+                             const DrawBlock& draw_block) const {
   const auto share = static_cast<float>((number - m_.lowest) / (m_.highest - m_.lowest));
   const float knob = 6 * size_, track = inner_ - knob, at = left + knob / 2 + track * share;
   const std::string value = number_text(number, m_.step);
   const float wide = (static_cast<float>(value.size()) * (kGlyphWidth + 1) - 1) * size_;
   append_letters(overlay, value, std::clamp(at - wide / 2, left, std::max(left, left + inner_ - wide)), y, size_,
-                 kKeys);
+                 look.keys);
   y += line(size_);
   const float middle = y + kTrack * size_ / 2;
   const double steps = (m_.highest - m_.lowest) / m_.step;
@@ -103,23 +101,25 @@ float QuestionLayout::slider(std::vector<Rect>& overlay, double number, float le
   const int marks = steps <= kMaxMarks ? static_cast<int>(std::lround(steps)) : 10;
   for (int i = 0; i <= marks; ++i)
     fill(overlay, left + knob / 2 + track * static_cast<float>(i) / static_cast<float>(marks) - size_ / 2,
-         middle - 4 * size_, size_, 8 * size_, kQuiet);
-  fill(overlay, left + knob / 2, middle - size_, track, 2 * size_, kQuiet);
-  fill(overlay, at - knob / 2, middle - 8 * size_, knob, 16 * size_, kKeys);
+         middle - 4 * size_, size_, 8 * size_, look.quiet);
+  fill(overlay, left + knob / 2, middle - size_, track, 2 * size_, look.quiet);
+  fill(overlay, at - knob / 2, middle - 8 * size_, knob, 16 * size_, look.keys);
   y += kTrack * size_;
-  draw_block(1, left, y, kWords);
-  draw_block(2, left + inner_ - blocks_[2].width, y, kWords);
+  draw_block(1, left, y, look.words);
+  draw_block(2, left + inner_ - blocks_[2].width, y, look.words);
   return y + std::max(blocks[1], blocks[2]);
 }
 
-std::vector<LetterSize> letter_sizes(const TextArea& room) {
+std::vector<LetterSize> letter_sizes(const TextArea& room, float factor) {
   const float all = room.bottom - room.y, margin = std::floor(all * 0.03f);
   // A picture of 720 lines: 4 pixels for each pixel of a letter, a letter of 28 lines; 480 lines: 3 pixels.
-  const float largest = std::max(1.0f, std::round(all / 180));
+  const float largest = std::max(1.0f, std::round(factor * std::max(1.0f, std::round(all / 180)))), half = std::ceil(largest / 2);
   std::vector<LetterSize> sizes;
-  for (float size = largest; size >= std::ceil(largest / 2); --size)
+  for (float size = largest; size >= half; --size) {
     sizes.push_back({size, 3, all * 2 / 3 - margin, margin});
-  for (float size = largest; size >= 1; --size) sizes.push_back({size, 3, all - 2 * margin, margin});
+    if (factor > 1) sizes.push_back({size, 3, all - 2 * margin, margin});
+  }
+  for (float size = factor > 1 ? half - 1 : largest; size >= 1; --size) sizes.push_back({size, 3, all - 2 * margin, margin});
   sizes.push_back({1, 1, all, 0});
   return sizes;
 }

@@ -34,13 +34,13 @@ class QuestionLayout {
   float height(const std::vector<float>& blocks) const;
   // mirrored: the keys of the choices are at the right, for writing from right to left.
   void draw(std::vector<Rect>& overlay, double number, float x, float y, const std::vector<float>& blocks,
-            bool mirrored, const DrawBlock& draw_block) const;
+            bool mirrored, const TextLook& look, const DrawBlock& draw_block) const;
 
  private:
   float line(float size) const;
   float gap() const { return leading_ * size_; }
   float slider(std::vector<Rect>& overlay, double number, float left, float y, const std::vector<float>& blocks,
-               const DrawBlock& draw_block) const;
+               const TextLook& look, const DrawBlock& draw_block) const;
 
   const question_t& m_;
   float width_, size_, small_, leading_, inner_;
@@ -49,11 +49,12 @@ class QuestionLayout {
 };
 
 // A size of letters to try, with the height of the plate that it may have: large letters in two thirds of the room
-// first. The last try must be used, even if its plate is higher.
+// first. The last try must be used, even if its plate is higher. factor: TextLook::size; above 1, letters take the whole room before
+// they get smaller.
 struct LetterSize {
   float size, leading, height, margin;
 };
-std::vector<LetterSize> letter_sizes(const TextArea& room);
+std::vector<LetterSize> letter_sizes(const TextArea& room, float factor = 1);
 // Width of the plate in the room.
 float plate_width(const TextArea& room);
 // Upper left corner of a plate of that height.

@@ -73,8 +73,9 @@ std::vector<std::string> wrap_text(std::string_view text, std::size_t letters) {
   return lines;
 }
 
-void append_question(std::vector<Rect>& overlay, const question_t& m, double number, const TextArea& room) {
-  const std::vector<LetterSize> sizes = letter_sizes(room);
+void append_question(std::vector<Rect>& overlay, const question_t& m, double number, const TextArea& room,
+                     const TextLook& look) {
+  const std::vector<LetterSize> sizes = letter_sizes(room, look.size);
   for (const LetterSize& t : sizes) {
     const QuestionLayout layout(m, plate_width(room), t.size, t.leading);
     WrappedBlocks texts(layout, t.leading);
@@ -82,7 +83,7 @@ void append_question(std::vector<Rect>& overlay, const question_t& m, double num
     if (layout.height(texts.heights) > t.height && !last) continue;
     if (last) texts.fit(t.height);
     const Eigen::Vector2f at = plate_corner(room, layout.height(texts.heights), t.margin);
-    layout.draw(overlay, number, at.x(), at.y(), texts.heights, false,
+    layout.draw(overlay, number, at.x(), at.y(), texts.heights, false, look,
                 [&](std::size_t block, float x, float y, const Eigen::Vector3f& colour) {
                   texts.draw(overlay, block, x, y, colour);
                 });

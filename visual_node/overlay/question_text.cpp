@@ -46,10 +46,10 @@ void fit(const QuestionLayout& layout, QuestionText& text) {
 
 }  // namespace
 
-QuestionText typeset_question(const question_t& m, const TextArea& room, const DrawText& draw) {
+QuestionText typeset_question(const question_t& m, const TextArea& room, const DrawText& draw, float factor) {
   QuestionText text;
   try {
-    const std::vector<LetterSize> sizes = letter_sizes(room);
+    const std::vector<LetterSize> sizes = letter_sizes(room, factor);
     for (const LetterSize& size : sizes) {
       const QuestionLayout layout(m, plate_width(room), size.size, size.leading);
       DrawnText found = draw(request_of(layout, true));
@@ -73,12 +73,12 @@ QuestionText typeset_question(const question_t& m, const TextArea& room, const D
 }
 
 void append_question(std::vector<Rect>& overlay, std::vector<Label>& labels, const question_t& m, double number,
-                     const TextArea& room, const QuestionText& text) {
+                     const TextArea& room, const QuestionText& text, const TextLook& look) {
   const QuestionLayout layout(m, plate_width(room), text.size.size, text.size.leading);
   const std::vector<float> heights = heights_of(layout, text.blocks, text.size.leading);
   if (heights.size() != layout.blocks().size()) return;
   const Eigen::Vector2f at = plate_corner(room, layout.height(heights), text.size.margin);
-  layout.draw(overlay, number, at.x(), at.y(), heights, text.blocks.front().right_to_left,
+  layout.draw(overlay, number, at.x(), at.y(), heights, text.blocks.front().right_to_left, look,
               [&](std::size_t block, float x, float y, const Eigen::Vector3f& colour) {
                 const DrawnBlock& drawn = text.blocks[block];
                 // Whole pixels: the text picture is drawn as it is.
@@ -98,13 +98,13 @@ void QuestionTexts::take_done() {
   } catch (const std::exception& e) {
     text.problem = std::string("the question cannot be drawn: ") + e.what();
   }
-  if (work_->key == key_) done_.push_back({work_->width, work_->height, std::move(text)});
+  if (work_->key == key_ && work_->factor == factor_) done_.push_back({work_->width, work_->height, std::move(text)});
   work_.reset();
 }
 
-const QuestionText* QuestionTexts::find(const question_t& m, const TextArea& room) {
+const QuestionText* QuestionTexts::find(const question_t& m, const TextArea& room, float factor) {
   const sync::QuestionKey key = sync::key_of(m);
-  if (key_ != key) key_ = key, done_.clear();
+  if (key_ != key || factor_ != factor) key_ = key, factor_ = factor, done_.clear();
   const float width = room.right - room.x, height = room.bottom - room.y;
   // The second round finds what was typeset at once.
   for (int round = 0; round < 2; ++round) {
@@ -113,13 +113,13 @@ const QuestionText* QuestionTexts::find(const question_t& m, const TextArea& roo
                                     [&](const Done& d) { return d.width == width && d.height == height; });
     if (known != done_.end()) return &known->text;
     if (work_ || done_.size() >= kMaxRooms) return nullptr;
-    const auto typeset = [m, room, make = make_] {
-      return std::make_unique<QuestionText>(typeset_question(m, room, make()));
+    const auto typeset = [m, room, factor, make = make_] {
+      return std::make_unique<QuestionText>(typeset_question(m, room, make(), factor));
     };
     if (at_once_)
       done_.push_back({width, height, std::move(*typeset())});
     else
-      work_.emplace(Work{key, width, height, sync::BackgroundTask<QuestionText>(typeset)});
+      work_.emplace(Work{key, width, height, factor, sync::BackgroundTask<QuestionText>(typeset)});
   }
   return nullptr;
 }

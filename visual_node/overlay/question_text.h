@@ -28,13 +28,13 @@ struct QuestionText {
 // clause.
 using DrawText = std::function<DrawnText(const TextRequest&)>;
 
-// Typesets with the largest letters that fit, as append_question() of question_panel.h. Not for the loop of a
+// Typesets with the largest letters that fit, as append_question() of question_panel.h. factor: TextLook::size. Not for the loop of a
 // node.
-QuestionText typeset_question(const question_t& m, const TextArea& room, const DrawText& draw);
+QuestionText typeset_question(const question_t& m, const TextArea& room, const DrawText& draw, float factor = 1);
 
 // Draws it with its mark at `number`. text: without a problem, and for a room of this size.
 void append_question(std::vector<Rect>& overlay, std::vector<Label>& labels, const question_t& m, double number,
-                     const TextArea& room, const QuestionText& text);
+                     const TextArea& room, const QuestionText& text, const TextLook& look = {});
 
 // The typeset texts of the current question. Realtime-safe: find() does not wait, unless it works at once.
 class QuestionTexts {
@@ -46,7 +46,7 @@ class QuestionTexts {
   explicit QuestionTexts(bool at_once, std::function<DrawText()> make = {});
 
   // Null while it is being typeset, and when there are more than kMaxRooms sizes.
-  const QuestionText* find(const question_t& m, const TextArea& room);
+  const QuestionText* find(const question_t& m, const TextArea& room, float factor = 1);
 
  private:
   struct Done {
@@ -55,7 +55,7 @@ class QuestionTexts {
   };
   struct Work {
     sync::QuestionKey key;
-    float width, height;
+    float width, height, factor;
     sync::BackgroundTask<QuestionText> task;
   };
   void take_done();
@@ -63,6 +63,7 @@ class QuestionTexts {
   bool at_once_;
   std::function<DrawText()> make_;
   std::optional<sync::QuestionKey> key_;  // of the texts in done_
+  float factor_ = 1;                      // on the size of their letters
   std::vector<Done> done_;
   std::optional<Work> work_;
 };

@@ -1,5 +1,6 @@
 #include "visual_node/frame/frame_composer.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <map>
@@ -116,6 +117,27 @@ TEST_CASE_METHOD(Fixture, "A frame shows the world at the instant at which it is
   CHECK(f.state == node_health_t::RUNNING);
   CHECK(f.status == sync::SampleStatus::kExtrapolated);
   CHECK(x_of(f) == Approx(2 + 1e-9 * static_cast<double>(t) + 0.004).margin(1e-6));  // 4 ms ahead at 1 m/s
+}
+
+TEST_CASE_METHOD(Fixture, "The status word follows the size and the contrast of texts during a run, and stays in the picture") {
+  // The plate of the word and its letters, which are drawn last; before them come the cells of the markers.
+  const auto word_of = [](const Frame& f) {
+    const auto plate = std::find_if(f.list.overlay.begin(), f.list.overlay.end(), [](const Rect& r) { return r.x == 8 && r.y == 8; });
+    return std::vector<Rect>(plate, f.list.overlay.end());
+  };
+  const auto usual = word_of(frame(0));
+  REQUIRE(usual.size() > 20);
+  Settings changed;
+  changed.text_size = 2, changed.text_contrast = "high";
+  composer.change(changed);
+  const auto twice = word_of(frame(16'000'000));
+  REQUIRE(twice.size() == usual.size());
+  CHECK(twice[0].height == 2 * usual[0].height);
+  CHECK(twice[0].alpha == 1);
+  CHECK(twice[1].height == 2 * usual[1].height);
+  changed.text_size = 4;
+  composer.change(changed);
+  for (const Rect& r : word_of(frame(32'000'000))) CHECK(r.x + r.width <= 640);
 }
 
 TEST_CASE_METHOD(Fixture,

@@ -4,6 +4,7 @@
 #include "visual_node/overlay/live_overlays.h"
 
 #include <catch2/catch.hpp>
+#include <tuple>
 #include <tactus/tool_state_t.hpp>
 
 #include "visual_node/frame/marker.h"
@@ -25,9 +26,9 @@ struct OverlayLayout {
   sync::EventInbox events{bus.clocks()};
   LiveOverlays overlays{bus, events};
 
-  std::vector<std::string> configure(const std::string& overlay, const std::string& plots = "") {
+  std::vector<std::string> configure(const std::string& overlay, const std::string& plots = "", double text_size = 1) {
     Settings s;
-    s.overlay = overlay, s.plots = plots;
+    s.overlay = overlay, s.plots = plots, s.text_size = text_size;
     return overlays.configure(s);
   }
   // Publishes a force on the hand, then draws the overlays of a frame.
@@ -51,13 +52,14 @@ bool overlap(const Rect& a, const Rect& b) {
 
 TEST_CASE("Overlays do not overlap in any combination and keep the marker free") {
   OverlayLayout c;
-  REQUIRE(c.configure("all,help",
-                      "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text TOOL_STATE.tool;"
-                      "graph TOOL_STATE.energy_J; graph TOOL_STATE.coupling; graph TOOL_STATE.seq_no")
-              .size() == 1);
-  for (const auto& [width, height] : {std::pair(320, 240), std::pair(640, 480), std::pair(960, 540),
-                                      std::pair(1920, 1080), std::pair(4096, 240)}) {
-    CAPTURE(width, height);
+  for (const auto& [text_size, width, height] : {std::tuple(1.0, 320, 240), std::tuple(1.0, 640, 480), std::tuple(1.0, 960, 540),
+                                                 std::tuple(1.0, 1920, 1080), std::tuple(1.0, 4096, 240), std::tuple(2.0, 640, 480),
+                                                 std::tuple(1.5, 1920, 1080), std::tuple(4.0, 1280, 720)}) {
+    REQUIRE(c.configure("all,help",
+                        "graph TOOL_STATE.force_N.z; bar TOOL_STATE.fade; text TOOL_STATE.tool;"
+                        "graph TOOL_STATE.energy_J; graph TOOL_STATE.coupling; graph TOOL_STATE.seq_no", text_size)
+                .size() == 1);
+    CAPTURE(text_size, width, height);
     const auto rects = c.drawn(width, height);
     std::vector<Rect> plates;
     for (const Rect& r : rects)

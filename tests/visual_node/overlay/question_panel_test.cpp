@@ -139,6 +139,45 @@ TEST_CASE("The longest possible question is drawn completely within the picture"
   }
 }
 
+TEST_CASE("A question of usual length is drawn in letters of the chosen size, and takes more of the picture for them") {
+  question_t m = choice(1, {"yes", "no"});
+  m.text = "Did the ball feel soft?";
+  for (const float factor : {0.5f, 1.0f, 2.0f})
+    for (const char* contrast : {"dark", "light", "high"}) {
+      const TextLook look = text_look(contrast, factor);
+      std::vector<Rect> overlay;
+      append_question(overlay, m, 0, {0, 0, 1280, 720}, look);
+      CAPTURE(factor, contrast);
+      REQUIRE(overlay.size() > 100);
+      // 720 lines: 4 pixels a letter's pixel. Those of the question itself, not of the smaller hint.
+      float size = 0;
+      for (const Rect& r : overlay)
+        if (Eigen::Vector3f(r.red, r.green, r.blue) == look.words) size = std::max(size, r.height);
+      CHECK(size == 4 * factor);
+      const Rect& plate = overlay.front();
+      CHECK((Eigen::Vector3f(plate.red, plate.green, plate.blue) == look.question.colour && plate.alpha == look.question.opacity));
+      CHECK(plate.y + plate.height <= 720);
+    }
+}
+
+TEST_CASE("Letters of any chosen size get smaller until the longest question is within the picture") {
+  const question_t m = longest();
+  for (const float factor : {0.5f, 1.3f, 2.0f, 4.0f})
+    for (const Picture& p : kPictures) {
+      CAPTURE(factor, p.width, p.height);
+      std::vector<Rect> rects;
+      const TextLook look = text_look("dark", factor);
+      append_question(rects, m, 0, {0, 0, p.width, p.height - kMarkers_px}, look);
+      for (const Rect& r : rects) {
+        CHECK((r.x >= 0 && r.y >= 0 && r.x + r.width <= p.width));
+        CHECK(r.y + r.height <= p.height - kMarkers_px + 0.01f);
+      }
+      std::size_t wanted = 0;
+      for (const std::string& c : m.choices) wanted += pixels(c, finest(rects));
+      CHECK(area(rects, 1, 1, 1) >= wanted);  // choices are never left out
+    }
+}
+
 TEST_CASE("The mark of a number is at its position on the slider and never beyond it") {
   const question_t m = number(1, -1, 1, 0.1);
   const auto mark_x = [&](double at) {

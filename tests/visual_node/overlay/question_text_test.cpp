@@ -170,6 +170,17 @@ TEST_CASE("Texts are typeset once for each question and size of room, and a loop
   CHECK(gate->drawn == 3);
 }
 
+TEST_CASE("A question is typeset again for each chosen size of letters, however often it changes") {
+  QuestionTexts texts(true, [] { return substitute; });
+  const TextArea room{0, 0, 1280, 720};
+  for (int i = 0; i < 20; ++i)
+    for (const float factor : {1.0f, 2.0f, 0.5f}) {
+      const QuestionText* text = texts.find(asked(question_t::READ), room, factor);
+      REQUIRE(text);
+      CHECK(text->size.size == 4 * factor);
+    }
+}
+
 TEST_CASE("A log shows a typeset question in its first picture") {
   QuestionTexts texts(true, [] { return substitute; });
   CHECK(texts.find(asked(), {0, 0, 640, 432}));
