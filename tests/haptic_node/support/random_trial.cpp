@@ -83,6 +83,7 @@ TrialDef random_trial(std::mt19937& random) {
   d.failure_s = draw(random, 0.2, 0.9);
   d.stall_s = d.failure == Failure::kStall ? draw(random, 0.001, 0.4) : 0;
   if (random() % 2) d.force_operators = random_force_operators(random);
+  if (random() % 4 == 0) d.action_ms = static_cast<int>(draw(random, 1, 200));
   if (d.mass_kg > 0) return d;
   if (random() % 2) d.margin_late_m = 0.1;
   // Flat enough that the energy of the relief itself is below 0.1 mJ: a slope of 0.08.
@@ -110,7 +111,8 @@ std::string faults(const TrialDef& def, const TrialResult& r) {
   // Coarse steps do not render the small force that returns the impulse of a transient.
   if (def.force_step_N == 0 && r.rung_down && !staged)
     require(std::abs(r.hand_N_s - r.constraint_N_s) <= reaction_N_s, "reaction of the hand");
-  if (def.mass_kg > 0) require(std::abs(r.body_N_s + r.constraint_N_s) <= reaction_N_s, "reaction of the body");
+  // A late force is partly on its way at the end.
+  if (def.mass_kg > 0 && def.action_ms == 0) require(std::abs(r.body_N_s + r.constraint_N_s) <= reaction_N_s, "reaction of the body");
   return list;
 }
 
@@ -124,7 +126,7 @@ std::string describe(const TrialDef& def) {
       if (def.settings.**word != plain.**word) out << entry.row.name << "=" << def.settings.**word << " ";
   }
   out << "| hand " << def.hand.mass_kg << " kg " << def.hand.damping_N_s_m << " N s/m " << def.hand.stiffness_N_m
-      << " N/m, body " << def.mass_kg << " kg, " << def.stiffness_N_m << " N/m, delay " << def.delay_ms << " ms, margin "
+      << " N/m, body " << def.mass_kg << " kg, " << def.stiffness_N_m << " N/m, delay " << def.delay_ms << " ms, action " << def.action_ms << " ms, margin "
       << def.margin_m << " m and " << def.margin_late_m << " m, relief " << def.relief_m << " m, force_step " << def.force_step_N << " N, stage force" << def.force_operators << ", hits " << def.hits << ", tap " << def.period_s
       << " s " << def.hold_s << " s " << def.depth_m << " m " << def.top_m << " m, failure "
       << static_cast<int>(def.failure) << " at " << def.failure_s << " s, stall " << def.stall_s << " s";

@@ -68,7 +68,7 @@ class Trial {
 
   TrialResult run() {
     const double tick_s = 1 / def_.settings.rate_Hz;
-    const double end_s = def_.taps * def_.period_s + kEnd_s + (def_.hits ? transients_s(def_.settings) : 0);
+    const double end_s = def_.taps * def_.period_s + kEnd_s + 1e-3 * def_.action_ms + (def_.hits ? transients_s(def_.settings) : 0);
     for (double t = 0; t < end_s; t += tick_s) {
       if (def_.failure == Failure::kStall && t >= def_.failure_s && !stalled_) stalled_ = true, t += def_.stall_s;
       while (world_steps_ * kStep_s <= t + 1e-12) step_world();
@@ -83,12 +83,15 @@ class Trial {
     return def_.failure == kind && t >= def_.failure_s && t < def_.failure_s + for_s;
   }
   // The impulse on the body up to time t: the force of a tick acts until the next one, or until the device drops it.
-  double impulse_until(double t) const {
-    return impulse_N_s_ + constraint_N_ * std::clamp(t - tick_s_, 0.0, sync::to_seconds(Device::kWatchdog));
+  double impulse_until(double t) {
+    while (sent_.size() > 1 && sent_[1].time_s <= t) sent_.pop_front();
+    if (sent_.empty() || t < sent_.front().time_s) return applied_N_s_;
+    const SentForce& f = sent_.front();
+    return f.impulse_N_s + f.force_N * std::clamp(t - f.time_s, 0.0, sync::to_seconds(Device::kWatchdog));
   }
   void step_world() {
     const double now_s = world_steps_ * kStep_s;
-    const double total = impulse_until(now_s), force_N = -(total - applied_N_s_) / kStep_s;
+    const double total = impulse_until(now_s - 1e-3 * def_.action_ms), force_N = -(total - applied_N_s_) / kStep_s;
     applied_N_s_ = total;
     if (def_.mass_kg > 0) {
       v_ += kStep_s * (force_N - kBodySpring_N_m * z_ - kBodyDamper_N_s_m * v_) / def_.mass_kg;
@@ -169,6 +172,7 @@ class Trial {
     in.touch_delay = sync::Nanoseconds(def_.delay_ms * kMs);
     in.force_step_N = def_.force_step_N;
     if (!operators_.empty()) in.force_stage = &operators_;
+    in.action_delay_s = 1e-3 * def_.action_ms;
     in.restarted = def_.failure == Failure::kRestart && t >= def_.failure_s && !restarted_;
     restarted_ = restarted_ || in.restarted;
     const auto events = hits(t, z);
@@ -176,6 +180,7 @@ class Trial {
     const TickOutput& out = renderer_.step(in);
     hand_.write(out.force_N);
     judge(t, out);
+    sent_.push_back({t, impulse_N_s_, constraint_N_});
   }
 
   // The energy of the forces of the last tick.
@@ -301,6 +306,10 @@ class Trial {
   VirtualHand hand_;
   TrialResult r_;
   std::deque<std::pair<double, touch_model_t>> way_;
+  struct SentForce {
+    double time_s, impulse_N_s, force_N;  // impulse up to the tick, and force from it on
+  };
+  std::deque<SentForce> sent_;  // to the body, from the newest that has reached it on
   touch_model_t used_{};
   std::optional<sync::HostTime> arrival_;
   int world_steps_ = 0;

@@ -28,6 +28,7 @@ struct TrialDef {
   double mass_kg = 0;           // of the body; 0: a wall
   double stiffness_N_m = 1000;  // of the surface
   int delay_ms = 0;             // of the touch models
+  int action_ms = 0;            // of the force on the body: the stage `action`
   // The simulation reports a surface only while the tool is within its margin: this distance, or the way of the tool in
   // margin_s. 0: always. A fixed surface is reported at margin_late_m to a tool that renders late models.
   double margin_m = 0, margin_s = 0, margin_late_m = 0;
@@ -46,7 +47,7 @@ struct TrialDef {
 struct TrialResult {
   double generated_mJ = 0;  // largest energy in an episode to hand and body, without transients
   double energy_mJ = 0;     // to the hand, in the whole trial, without transients
-  // Largest energy in an episode that the stage `force` has added to the most work of the computed force, without that which the
+  // Largest energy in an episode that the stage `force` has added to the most work of the computed force, without the part that the
   // damping of the device has dissipated.
   double injected_mJ = 0;
   double observed_mJ = 0;   // the largest generated_J of the state
@@ -70,8 +71,8 @@ TrialDef metronome();
 // A hand that presses 13 mm into that board within 0.3 s and holds it for 2.3 s; twice.
 TrialDef press();
 
-// Draws every setting of haptic_node within its range, on a logarithmic scale where the range allows, and a hand, a
-// surface, a delay, operators of the stage `force` and a failure. The hand has at least the mass, damping and inertia that the settings state.
+// Draws every setting of haptic_node within its range, on a logarithmic scale where the range allows, and a hand, a surface, delays,
+// operators of the stage `force` and a failure. The hand has at least the mass, damping and inertia that the settings state.
 TrialDef random_trial(std::mt19937& random);
 
 // Attributes of a rule at the stage `force`, with random values.

@@ -1,5 +1,6 @@
 """Tests of the metrics: values that were computed with another program, bounds for random signals, and runs whose metrics are known."""
 import csv
+import lzma
 import os
 import pathlib
 import subprocess
@@ -12,8 +13,8 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
-from tactus.metrics import age, codec, compare, of_run, ranking
 from tactus import tables
+from tactus.metrics import age, codec, compare, curves, of_run, rank, ranking
 from tactus.refusal import Refusal
 
 T = np.arange(1000) * 1e-3
@@ -308,6 +309,23 @@ class Ranking(unittest.TestCase):
         self.assertGreaterEqual(sum(row["metric"] in of_run.MEANING for row in stored["ranking"]), 3)
         losses = [row["loss_bits"] for row in stored["ranking"]]
         self.assertEqual(losses, sorted(losses))
+
+
+class Commands(unittest.TestCase):
+    def test_wrong_tables_and_options_give_one_sentence(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            for file, data in (("a.csv", b"a,b\n1,2\n"), ("b.csv", b"\xff\xfe"), ("c.csv.xz", b"no xz"), ("d.csv.xz", lzma.compress(b"a")[:-9])):
+                (folder / file).write_bytes(data)
+            log = folder / "run.lcmlog"
+            log.write_bytes(b"")
+            for program, words in ((rank, [folder / "a.csv"]), (rank, [folder / "b.csv"]), (rank, [folder / "c.csv.xz"]), (rank, [folder / "d.csv.xz"]), (rank, [folder]),
+                                   (rank, [folder / "none.csv"]), (curves, [folder / "none"]), (curves, [log, "--bands", "0,x"]), (curves, [log, "--bands", "nan"]),
+                                   (curves, [log, "--bands", "1.5"]), (curves, [log, "--floor", "inf"]), (curves, [log, "--delay=-1"]), (curves, [log, folder / "x.gif"])):
+                with self.subTest(words=words), self.assertRaises(SystemExit) as ended:
+                    program.main([str(word) for word in words])
+                self.assertIsInstance(ended.exception.code, str)
+                self.assertNotIn("\n", ended.exception.code)
 
 
 if __name__ == "__main__":

@@ -266,7 +266,7 @@ TEST_CASE("Under a new profile a motion is predicted from its own updates only")
     std::vector<tool_state_t> out;
     hand.release(sync::host_time(tick * kTick_ns), sync::sim_time(tick * kTick_ns), operators, out);
     REQUIRE(out.size() == 1);
-    CHECK(out[0].proxy_velocity_m_s.x == Approx(m.proxy_velocity_m_s.x).epsilon(0.11));
+    REQUIRE(out[0].proxy_velocity_m_s.x == Approx(m.proxy_velocity_m_s.x).epsilon(0.11));
   }
 }
 
