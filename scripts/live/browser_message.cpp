@@ -13,6 +13,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxModalities = 16;
 constexpr int kMaxSteps = 10'000;
+constexpr std::size_t kMaxChoices = 8, kMaxChoiceName = 32;
 
 double number(const json& j, const char* name, double min, double max) {
   const auto found = j.find(name);
@@ -67,6 +68,22 @@ Command command(const json& j) {
   throw std::invalid_argument("the page sent an unknown command; reload the page");
 }
 
+// Lower-case words only; the profile refuses unknown ones.
+std::map<std::string, std::string> chosen(const json& j) {
+  if (!j.is_object() || j.size() > kMaxChoices)
+    throw std::invalid_argument("the page sent no choices, or too many; reload the page");
+  std::map<std::string, std::string> choices;
+  for (const auto& [name, value] : j.items()) {
+    const std::string of_value = text(value, kMaxChoiceName);
+    const auto is_word = [](const std::string& word) {
+      return !word.empty() && word.size() <= kMaxChoiceName && std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; });
+    };
+    if (!is_word(name) || !is_word(of_value)) throw std::invalid_argument("the page sent a choice that is not a word; reload the page");
+    choices[name] = of_value;
+  }
+  return choices;
+}
+
 DegradeRequest degrade(const json& j) {
   const auto senses = j.find("senses");
   if (senses == j.end() || !senses->is_object() || senses->size() > kMaxModalities)
@@ -78,6 +95,8 @@ DegradeRequest degrade(const json& j) {
       throw std::invalid_argument("the page sent sliders of an invalid modality name; reload the page");
     Sliders sliders{number(s, "delay_ms", 0, 2000), number(s, "rate_Hz", 0, 1000), number(s, "loss", 0, 1)};
     if (sliders.rate_Hz > 0 && sliders.rate_Hz < 0.1) throw std::invalid_argument("\"rate_Hz\" is below 0.1; give more, or 0");
+    if (s.contains("deadband")) sliders.deadband = number(s, "deadband", 0, 1);
+    if (const auto choices = s.find("choices"); choices != s.end()) sliders.choices = chosen(*choices);
     d.senses[name] = sliders;
   }
   return d;

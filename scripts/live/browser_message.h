@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -16,6 +17,8 @@ struct Sliders {
   double delay_ms = 0;  // 0 .. 2000
   double rate_Hz = 0;   // 0, or 0.1 .. 1000
   double loss = 0;      // share, 0 .. 1
+  std::optional<double> deadband{};  // share, 0 .. 1; empty: as it is
+  std::map<std::string, std::string> choices{};  // sync::operator_choices() by name; without a name: as it is
 };
 
 struct WatchRequest {

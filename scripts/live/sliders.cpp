@@ -120,12 +120,102 @@ void apply_loss(XMLElement& root, const std::string& sense, double loss) {
       loss > 0 ? number(loss * 100) + "%" + (fits ? " burst=" + number(old.mean_burst) : "") : "");
 }
 
+const sync::StageDef* stage_of(const std::string& sense) {
+  const std::size_t colon = sense.find(':');
+  const sync::KnownModality* known = sync::known_modality(sense.substr(0, colon));
+  if (!known || colon == sense.npos) return nullptr;
+  const auto it = std::find_if(known->stages.begin(), known->stages.end(), [&](const sync::StageDef& s) { return s.name == sense.substr(colon + 1); });
+  return it == known->stages.end() ? nullptr : &*it;
+}
+
+bool has_attribute(const sync::StageDef& stage, const std::string& name) {
+  const auto attributes = sync::stage_attributes(stage.kind);
+  return std::find(attributes.begin(), attributes.end(), name) != attributes.end();
+}
+
+// The choices of a stage; the input has none.
+std::vector<sync::OperatorChoice> choices_of(const std::string& sense) {
+  std::vector<sync::OperatorChoice> mine;
+  if (const sync::StageDef* stage = stage_of(sense))
+    for (const sync::OperatorChoice& c : sync::operator_choices())
+      if (has_attribute(*stage, c.is_word ? c.of : c.name)) mine.push_back(c);
+  return mine;
+}
+bool has_deadband(const std::string& sense) {
+  const sync::StageDef* stage = stage_of(sense);
+  return stage && has_attribute(*stage, "deadband");
+}
+
+std::string written(const sync::DeadbandDef& d) {
+  const char* const unit = d.quantity == sync::Quantity::kForce ? "N" : d.quantity == sync::Quantity::kVelocity ? "m/s" : "m";
+  std::string text = number(100 * d.fraction) + "% " +
+                     (d.quantity == sync::Quantity::kForce ? "force" : d.quantity == sync::Quantity::kVelocity ? "velocity" : "position");
+  if (d.floor > 0) text += " floor=" + number(d.floor) + unit;
+  if (d.adaptive_s_m > 0) text += " adaptive=" + number(d.adaptive_s_m) + "s/m";
+  if (d.predictor == sync::Predictor::kLinear) text += " predict=linear";
+  // A line follows the values as sent (sync/degradation/parse_operator.cpp).
+  else if (d.lowpass_Hz > 0) text += " lowpass=" + number(d.lowpass_Hz) + "Hz";
+  if (d.resend_s > 0) text += " resend=" + number(1e3 * d.resend_s) + "ms";
+  return text;
+}
+
+// The deadband and the words of it that are choices.
+void apply_deadband(XMLElement& root, const std::string& sense, const Sliders& s) {
+  if (!has_deadband(sense)) return;
+  const auto old = operator_of("deadband", first_element(root, sense, "deadband")).deadband;
+  const auto predict = s.choices.find("predict");
+  sync::DeadbandDef d = old.value_or(sync::DeadbandDef{});
+  if (!old) d.quantity = stage_of(sense)->kind == sync::StageKind::kMessages ? sync::Quantity::kVelocity : sync::Quantity::kForce;
+  const sync::Predictor predictor = predict == s.choices.end() ? d.predictor : predict->second == "linear" ? sync::Predictor::kLinear : sync::Predictor::kHold;
+  const double fraction = s.deadband.value_or(d.fraction);
+  if (nearly_equal(d.fraction, fraction) && (d.predictor == predictor || !old)) return;
+  const bool ends = s.deadband && fraction == 0 && d.fraction > 0;
+  d.fraction = fraction;
+  d.predictor = predictor;
+  set(root, sense, "deadband", ends ? "" : written(d));
+}
+
+// The choices that are attributes of their own.
+void apply_choices(XMLElement& root, const std::string& sense, const Sliders& s) {
+  for (const sync::OperatorChoice& c : choices_of(sense)) {
+    const auto value = s.choices.find(c.name);
+    if (c.is_word || value == s.choices.end()) continue;
+    const XMLElement* const e = first_element(root, sense, c.name.c_str());
+    if (value->second == (e ? e->Attribute(c.name.c_str()) : c.values.front())) continue;
+    // Beside an operator that is absent, it would have no effect.
+    if (!c.of.empty() && first_element(root, sense, c.of.c_str()) == nullptr) continue;
+    set(root, sense, c.name.c_str(), value->second == c.values.front() ? "" : value->second);
+  }
+}
+
 // Parses the document and returns the name of the profile.
 std::string parse(tinyxml2::XMLDocument& document, const std::string& profile) {
   const std::string& text = or_empty(profile);
   const std::string name = sync::parse_profile(text, "the profile in force").name;
   document.Parse(text.data(), text.size());
   return name;
+}
+
+// True for an attribute that a control beside delay, rate and loss shows.
+bool is_shown(const std::string& sense, const std::string& attribute) {
+  const auto choices = choices_of(sense);
+  return (attribute == "deadband" && has_deadband(sense)) ||
+         std::any_of(choices.begin(), choices.end(), [&](const sync::OperatorChoice& c) { return !c.is_word && c.name == attribute; });
+}
+
+// The choices of a sense in a profile.
+std::map<std::string, std::string> chosen_in(XMLElement& root, const std::string& sense) {
+  std::map<std::string, std::string> chosen;
+  for (const sync::OperatorChoice& c : choices_of(sense)) {
+    chosen[c.name] = c.values.front();
+    const XMLElement* const e = first_element(root, sense, (c.is_word ? c.of : c.name).c_str());
+    if (e == nullptr) continue;
+    if (!c.is_word)
+      chosen[c.name] = e->Attribute(c.name.c_str());
+    else if (operator_of("deadband", e).deadband->predictor == sync::Predictor::kLinear)
+      chosen[c.name] = "linear";
+  }
+  return chosen;
 }
 
 struct SliderState {
@@ -142,7 +232,7 @@ std::map<std::string, SliderState> slider_states(XMLElement& root) {
     s.more = s.more || ++elements[sense] > 1 || !is_unconditional(*e);
     for (const tinyxml2::XMLAttribute* a = e->FirstAttribute(); a; a = a->Next())
       if (const std::string name = a->Name();
-          name != "modality" && name != "stage" && name != "delay" && name != "rate" && name != "loss")
+          name != "modality" && name != "stage" && name != "delay" && name != "rate" && name != "loss" && !is_shown(sense, name))
         s.more = true;
   }
   for (auto& [sense, s] : out) {
@@ -150,6 +240,9 @@ std::map<std::string, SliderState> slider_states(XMLElement& root) {
     const auto rate = operator_of("rate", first_element(root, sense, "rate")).rate;
     const auto loss = operator_of("loss", first_element(root, sense, "loss")).loss;
     s.sliders = {delay ? delay->delay_s * 1e3 : 0, rate ? rate->rate_Hz : 0, loss ? loss->share : 0};
+    const auto deadband = has_deadband(sense) ? operator_of("deadband", first_element(root, sense, "deadband")).deadband : std::nullopt;
+    s.sliders.deadband = deadband ? deadband->fraction : 0;
+    s.sliders.choices = chosen_in(root, sense);
   }
   return out;
 }
@@ -164,12 +257,20 @@ nlohmann::json degradation_json(const std::string& profile) {
     senses[sync::printable(sense)] = {{"delay_ms", s.sliders.delay_ms},
                                       {"rate_Hz", s.sliders.rate_Hz},
                                       {"loss", s.sliders.loss},
+                                      {"deadband", *s.sliders.deadband},
+                                      {"choices", s.sliders.choices},
                                       {"more", s.more}};
-  nlohmann::json stages = nlohmann::json::array();
+  nlohmann::json stages = nlohmann::json::array(), controls = nlohmann::json::object();
   for (const sync::KnownModality& m : sync::known_modalities())
-    for (const sync::StageDef& s : m.stages)
-      if (s.kind != sync::StageKind::kInput) stages.push_back(m.name + ":" + s.name);
-  return {{"name", sync::printable(profile.empty() ? "" : name)}, {"senses", senses}, {"stages", stages}};
+    for (const sync::StageDef& s : m.stages) {
+      if (s.kind == sync::StageKind::kInput) continue;
+      const std::string sense = m.name + ":" + s.name;
+      stages.push_back(sense);
+      nlohmann::json choices = nlohmann::json::array();
+      for (const sync::OperatorChoice& c : choices_of(sense)) choices.push_back({{"name", c.name}, {"of", c.of}, {"values", c.values}});
+      controls[sense] = {{"deadband", has_deadband(sense)}, {"choices", choices}};
+    }
+  return {{"name", sync::printable(profile.empty() ? "" : name)}, {"senses", senses}, {"stages", stages}, {"controls", controls}};
 }
 
 std::string with_sliders(const std::string& profile, const std::map<std::string, Sliders>& senses) {
@@ -180,6 +281,8 @@ std::string with_sliders(const std::string& profile, const std::map<std::string,
     apply_delay(root, sense, s.delay_ms);
     apply_rate(root, sense, s.rate_Hz);
     apply_loss(root, sense, s.loss);
+    apply_deadband(root, sense, s);
+    apply_choices(root, sense, s);
   }
   const std::string name = root.Attribute("name") ? root.Attribute("name") : "";
   if (!name.ends_with("live page")) root.SetAttribute("name", (name + kChangedSuffix).c_str());

@@ -10,9 +10,11 @@
 
 namespace tactus::live {
 
-// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, more}}, "stages": [sense, ...]}, as sent to pages: for each modality
-// the first values that apply at all times and to all contacts. A stage of a modality is a sense "MODALITY:STAGE"; stages: all. more: the profile has more operators of this modality than its sliders show. Throws
-// std::invalid_argument with one sentence for an invalid profile; "" degrades nothing.
+// {"name": ..., "senses": {sense: {delay_ms, rate_Hz, loss, deadband, choices: {name: value}, more}}, "stages": [sense, ...], "controls": {sense: {deadband,
+// choices: [{name, of, values}, ...]}}}, as sent to pages: for each modality the first values that apply at all times and to all contacts. A stage of a
+// modality is a sense "MODALITY:STAGE"; stages: all. controls: those of a stage beside delay, rate and loss, from the descriptors of the stages
+// (sync/degradation/profile.h); of: the slider that must be above 0 for a choice to have an effect, or "". more: the profile has more operators of this modality
+// than its controls show. Throws std::invalid_argument with one sentence for an invalid profile; "" degrades nothing.
 nlohmann::json degradation_json(const std::string& profile);
 
 // The profile with the sliders at these positions: a value that a slider has not changed stays as written, with its kind, its

@@ -14,7 +14,6 @@
 #include <tactus/touch_model_t.hpp>
 
 #include "haptic_node/devices/motion_file.h"
-#include "haptic_node/devices/virtual_hand.h"
 #include "lcmtypes/channels.h"
 #include "sync/bus/decode.h"
 #include "sync/log/log_feed.h"
@@ -44,6 +43,18 @@ std::optional<Eigen::Vector3d> DelayedForce::take(sync::HostTime now) {
   std::optional<Eigen::Vector3d> newest;
   for (; !waiting_.empty() && waiting_.front().first <= now; waiting_.pop_front()) newest = waiting_.front().second;
   return newest;
+}
+
+haptic::DeviceState RerunHand::tick(sync::HostTime now) {
+  const haptic::DeviceState state = hand_.read(now);
+  if (const auto force_N = felt_.take(now)) {
+    hand_.write(haptic::Wrench{*force_N, Eigen::Vector3d::Zero()});
+    renewed_ = now;
+  } else if (renewed_ && now - *renewed_ >= haptic::Device::kWatchdog) {  // the hand itself watches only its readings
+    hand_.write(haptic::Wrench{});
+    renewed_.reset();
+  }
+  return state;
 }
 
 std::vector<RecordedCommand> recorded_commands(const std::string& log, int run) {
@@ -80,17 +91,17 @@ int run_rerun_hand(int argc, char** argv) try {
   sync::parse_or_exit(app, kRerunHand.name, argc, argv);
   if (device.empty() != motion.empty()) throw std::runtime_error("--device and --motion belong together; give both or neither");
 
-  std::optional<haptic::VirtualHand> hand;
+  std::optional<RerunHand> hand;
   if (!motion.empty()) {
     haptic::Motion path = haptic::read_motion(motion);
-    hand.emplace(haptic::MonotoneCubic(std::move(path.times_s), std::move(path.positions_m), haptic::MonotoneCubic::Ends::kRest), false, hand_def);
+    hand.emplace(haptic::MonotoneCubic(std::move(path.times_s), std::move(path.positions_m), haptic::MonotoneCubic::Ends::kRest), hand_def,
+                 sync::from_seconds(force_delay_s));
   }
   const std::vector<RecordedCommand> commands = log.empty() ? std::vector<RecordedCommand>{} : recorded_commands(log, run);
   std::size_t next_command = 0;
   sync::Node node(kRerunHand, options);
   auto& models = node.bus().queue<touch_model_t>(channels::kTouchModel, 64);
   auto& forces = node.bus().queue<device_force_t>(channels::kDeviceForce, 64);
-  DelayedForce felt(sync::from_seconds(force_delay_s));
   std::optional<sync::HostTime> begin;  // arrival of the first touch model
   device_state_t state{};
   state.device = device;
@@ -105,10 +116,9 @@ int run_rerun_hand(int argc, char** argv) try {
       }
     while (const auto m = forces.pop())
       if (hand && m->message.device == device && m->message.header.run_id == options.run_id)
-        felt.push(m->arrival, {m->message.force_N.x, m->message.force_N.y, m->message.force_N.z});
+        hand->push(m->arrival, {m->message.force_N.x, m->message.force_N.y, m->message.force_N.z});
     if (hand) {
-      fill_state(state, hand->read(now));
-      if (const auto force_N = felt.take(now)) hand->write(*force_N);
+      fill_state(state, hand->tick(now));
       node.bus().publish(channels::kDeviceState, state);
     }
     for (; begin && next_command < commands.size() && now - *begin >= commands[next_command].after; ++next_command) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "haptic_node/devices/virtual_hand.h"
 #include "sync/time/time.h"
 
 namespace tactus {
@@ -26,6 +27,26 @@ class DelayedForce {
  private:
   sync::Nanoseconds delay_;
   std::deque<std::pair<sync::HostTime, Eigen::Vector3d>> waiting_;
+};
+
+// A hand of known impedance that follows a known intention, with the delay of its force. Pure.
+class RerunHand {
+ public:
+  // intention: m over s of simulated time; the hand stays at its ends. force_delay: of a force after its arrival, at least 0.
+  RerunHand(haptic::MonotoneCubic intention, const haptic::HandImpedance& impedance, sync::Nanoseconds force_delay)
+      : hand_(std::move(intention), false, impedance), felt_(force_delay) {}
+  // Host time at which the simulated time is 0. Before the call the hand is at the begin of its intention.
+  void begin(sync::HostTime at) { hand_.begin(at); }
+  // A force on the hand, N, that arrived at this time.
+  void push(sync::HostTime arrival, const Eigen::Vector3d& force_N) { felt_.push(arrival, force_N); }
+  // One tick: the hand at `now`. The newest force that is due acts from this tick until the next one; the hand is free when no force has
+  // arrived for the time of haptic::Device::kWatchdog.
+  haptic::DeviceState tick(sync::HostTime now);
+
+ private:
+  haptic::VirtualHand hand_;
+  DelayedForce felt_;
+  std::optional<sync::HostTime> renewed_;  // tick of the newest force; empty: no force acts
 };
 
 // A command to the simulation and its time after the first touch model of its run.

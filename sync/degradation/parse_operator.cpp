@@ -113,6 +113,15 @@ const std::map<std::string, JitterShape> kShapes{
 const std::map<std::string, bool> kTruths{{"true", true}, {"false", false}};
 const std::map<std::string, Conceal> kConceals{{"hold", Conceal::kHold}, {"zero", Conceal::kZero}};
 const std::map<std::string, Passivity> kPassivities{{"none", Passivity::kNone}, {"tdpa", Passivity::kTdpa}};
+const std::map<std::string, Predictor> kPredictors{{"hold", Predictor::kHold}, {"linear", Predictor::kLinear}};
+
+// The names, that of the value which changes nothing first.
+template <class Value>
+std::vector<std::string> names_of(const std::map<std::string, Value>& choices, Value neutral) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) names.insert(value == neutral ? names.begin() : names.end(), name);
+  return names;
+}
 
 std::string_view unit_of(Quantity q) {
   return q == Quantity::kForce ? "N" : q == Quantity::kVelocity ? "m/s" : "m";
@@ -153,8 +162,8 @@ DeadbandDef deadband(Words& w) {
   d.adaptive_s_m = w.pair("adaptive", "s/m", 0, 0, 1e3);
   d.resend_s = w.pair("resend", "s", 0, 0, kLongest_s);
   const std::string predict = w.pair("predict", "hold");
-  if (predict != "hold" && predict != "linear") throw std::invalid_argument("predict=" + predict + ": choose hold or linear");
-  d.predictor = predict == "linear" ? Predictor::kLinear : Predictor::kHold;
+  if (!kPredictors.contains(predict)) throw std::invalid_argument("predict=" + predict + ": choose hold or linear");
+  d.predictor = kPredictors.at(predict);
   // The receiver has the values as sent, without this filter, so its line would be another one than that of the sender.
   if (d.predictor == Predictor::kLinear && d.lowpass_Hz > 0)
     throw std::invalid_argument("predict=linear follows the values as sent; remove lowpass= here and give the "
@@ -254,6 +263,13 @@ bool parse_operator(Rule& rule, const std::string& name, const std::string& valu
   if (it == operators().end()) return false;
   parse_words(name, value, [&](Words& words) { it->second(rule, words); });
   return true;
+}
+
+const std::vector<OperatorChoice>& operator_choices() {
+  static const std::vector<OperatorChoice> all{{"predict", "deadband", true, names_of(kPredictors, Predictor::kHold)},
+                                               {"passivity", "", false, names_of(kPassivities, Passivity::kNone)},
+                                               {"conceal", "loss", false, names_of(kConceals, Conceal::kHold)}};
+  return all;
 }
 
 void parse_output(Rule& rule, const OutputOperator& declared, const std::string& value) {

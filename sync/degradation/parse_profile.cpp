@@ -254,6 +254,16 @@ void refuse_more_than_root(const tinyxml2::XMLDocument& document, const tinyxml2
 
 }  // namespace
 
+std::vector<std::string> stage_attributes(StageKind kind) {
+  switch (kind) {
+    case StageKind::kMessages: return {kOfMessages.begin(), kOfMessages.end()};
+    case StageKind::kSignal: return {kOfSignal.begin(), kOfSignal.end()};
+    case StageKind::kDisplay: return {kOfDisplay.begin(), kOfDisplay.end()};
+    case StageKind::kInput: break;
+  }
+  return {};
+}
+
 Profile parse_profile(const std::string& xml, const std::string& file, const DeclaredOutput& own) {
   // XML has none; the text after it would be ignored.
   if (const std::size_t nul = xml.find('\0'); nul != std::string::npos)

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sync/degradation/deadband.h"
+#include "sync/degradation/known_modalities.h"
 #include "sync/degradation/output_operator.h"
 #include "sync/random/jitter.h"
 #include "sync/random/loss.h"
@@ -116,6 +117,19 @@ ProfileInForce read_profile(std::string xml, const std::string& file);
 // Reads an attribute of <degrade> into the rule. Returns false, and changes nothing, when no operator on the stream has this
 // name. Throws std::invalid_argument with one sentence.
 bool parse_operator(Rule& rule, const std::string& name, const std::string& value);
+// A part of a rule that takes one of several names.
+struct OperatorChoice {
+  std::string name;
+  // The operator that it changes: as a word of it, or beside it; empty: the choice is an operator itself.
+  std::string of;
+  bool is_word = false;
+  std::vector<std::string> values;  // the first one changes nothing
+};
+// All choices.
+const std::vector<OperatorChoice>& operator_choices();
+// Attributes that a rule may have at a stage of this kind, beside modality, stage, from and until; of the input none are listed, as it takes all
+// but passivity.
+std::vector<std::string> stage_attributes(StageKind kind);
 // Reads an operator on the output into the rule. Throws std::invalid_argument with one sentence.
 void parse_output(Rule& rule, const OutputOperator& declared, const std::string& value);
 

@@ -8,6 +8,7 @@
 
 #include "sync/bus/decode.h"
 #include "sync/degradation/degraded_snapshots.h"
+#include "sync/relay/motion_line.h"
 
 namespace tactus::sync {
 namespace {
@@ -45,6 +46,19 @@ class Decimator::Compared : public Comparison {
   DegradedSnapshots<Message> stream_;
 };
 
+// The motion of a hand, whose receiver publishes it again.
+class Decimator::Motion : public Comparison {
+ public:
+  explicit Motion(const DeadbandDef& deadband) : sender_(deadband) {}
+  void push(std::span<const std::uint8_t> message, HostTime, std::vector<std::vector<std::uint8_t>>& out) override {
+    const auto m = decode<tool_state_t>(message.data(), message.size());
+    if (m && sender_.send(*m)) out.emplace_back(message.begin(), message.end());
+  }
+
+ private:
+  MotionSender sender_;
+};
+
 Decimator::Decimator(const PassRule& rule) : rule_(rule) {}
 Decimator::~Decimator() = default;
 Decimator::Decimator(Decimator&&) noexcept = default;
@@ -53,6 +67,7 @@ std::unique_ptr<Decimator::Comparison> Decimator::comparison() const {
   Rule rule = rule_.thinning;
   if (!in_pages(rule_.channel)) rule.rate.reset();  // decided on before, by due()
   if (!rule.rate && !rule.deadband) return nullptr;
+  if (carries_motion(rule_)) return std::make_unique<Motion>(*rule.deadband);
   if (rule_.channel == channels::kContacts) return std::make_unique<Compared<contact_frame_t>>(rule);
   if (rule_.channel == channels::kWorldState) return std::make_unique<Compared<world_state_t>>(rule);
   if (rule_.channel == channels::kTouchModel) return std::make_unique<Compared<touch_model_t>>(rule);

@@ -43,6 +43,7 @@ class Decimator {
   };
   template <class Message>
   class Compared;
+  class Motion;
   struct Sender {
     std::int64_t incarnation = 0;
     std::int64_t next_seq = 0;

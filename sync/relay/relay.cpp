@@ -39,11 +39,15 @@ void Relay::on_bus_message(const ChannelBytes& m, bool bulk, HostTime now) {
 
 bool Relay::on_line_message(std::size_t site, const LineMessage& m, HostTime now) {
   last_received_[site] = now;
-  if (!rules_.find(m.message.channel)) return ++counts_.withheld, false;
+  const PassRule* rule = rules_.find(m.message.channel);
+  if (!rule) return ++counts_.withheld, false;
   const auto header = peek_header(m.message.data.data(), m.message.data.size());
   if (!header || header->run_id != run_id_) return ++counts_.bad, false;
   if (!sides_.belongs_to(*header, SenderSides::kHere + 1 + static_cast<int>(site), now)) return false;
-  return ++counts_.in, true;
+  ++counts_.in;
+  if (!carries_motion(*rule)) return true;
+  if (!motions_[rule].try_emplace(site, *rule->thinning.deadband).first->second.push(m.message.data, now)) ++counts_.bad;
+  return false;
 }
 
 std::string Relay::status_text(HostTime now) {

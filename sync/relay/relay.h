@@ -10,6 +10,7 @@
 
 #include "sync/bus/datagram.h"
 #include "sync/relay/link.h"
+#include "sync/relay/motion_line.h"
 #include "sync/relay/outbox.h"
 #include "sync/relay/rules.h"
 #include "sync/relay/sides.h"
@@ -33,8 +34,17 @@ class Relay {
 
   // A message from the bus of this site.
   void on_bus_message(const ChannelBytes& message, bool bulk, HostTime now);
-  // A message from the line of a site: returns true when it must be sent on the bus.
+  // A message from the line of a site: returns true when it must be sent on the bus as it is. The motion of a hand is sent by
+  // publish_motions() instead.
   bool on_line_message(std::size_t site, const LineMessage& message, HostTime now);
+  // Calls send(channel, message) for the motions of hands at other sites: those that arrived since the last call, and between them the
+  // motion that the deadband of the rule implies. Once a tick.
+  template <class Send>
+  void publish_motions(HostTime now, Send&& send) {
+    for (auto& [rule, receivers] : motions_)
+      for (auto& [site, receiver] : receivers)
+        receiver.publish(now, [&, rule = rule](std::span<const std::uint8_t> message) { send(rule->channel, message); });
+  }
   // Calls send(site, datagram) -> bool for the datagrams that may be sent by now.
   template <class Send>
   void flush(HostTime now, Send&& send) {
@@ -60,6 +70,7 @@ class Relay {
   std::vector<OutboxCounts> reported_counts_;
   HostTime reported_at_{};
   std::map<const PassRule*, Decimator> decimators_;
+  std::map<const PassRule*, std::map<std::size_t, MotionReceiver>> motions_;  // by rule and site
   SenderSides sides_;
   RelayCounts counts_;
 };

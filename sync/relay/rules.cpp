@@ -7,6 +7,7 @@
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/spelling_suggestions.h"
+#include "sync/relay/motion_line.h"
 #include "sync/text/xml_reason.h"
 
 namespace tactus::sync {
@@ -66,8 +67,6 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
     else
       throw std::invalid_argument("a <pass> has no " + name + "; it has channel, first, rate and deadband");
   }
-  if (rule.thinning.deadband && rule.thinning.deadband->predictor == Predictor::kLinear)
-    throw std::invalid_argument("predict=linear needs a receiver that predicts, and receivers of a relay hold the last message; remove it");
   const Names& known = channels_of_the_bus();
   if (rule.channel.empty())
     throw std::invalid_argument("a <pass> needs a channel, for example channel=\"CONTACT_EVENTS\"");
@@ -84,6 +83,10 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
   if (rule.thinning.deadband && !holds(kCompared, rule.channel))
     throw std::invalid_argument("a deadband cannot compare messages of " + rule.channel + "; it can compare " +
                                 list(kCompared));
+  if (rule.thinning.deadband && rule.thinning.deadband->predictor == Predictor::kLinear && !carries_motion(rule))
+    throw std::invalid_argument(
+        "predict=linear needs a receiver that predicts: give the channel TOOL_STATE, a deadband of velocity or position, and resend=, for "
+        "example resend=20ms, after twice of which a silent hand stops; or remove predict=linear");
   return rule;
 }
 

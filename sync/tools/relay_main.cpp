@@ -83,6 +83,7 @@ int main(int argc, char** argv) try {
     line.read(relay.sites(), [&](std::size_t site, const sync::LineMessage& m) {
       if (relay.on_line_message(site, m, now)) (m.bulk ? bulk : realtime).send(m.message.channel, m.message.data);
     });
+    relay.publish_motions(now, [&](const std::string& channel, std::span<const std::uint8_t> m) { realtime.send(channel, m); });
     reader.read(sync::Bus::kMaxDrain, [&](std::size_t side, const sync::ChannelBytes& m) { relay.on_bus_message(m, side == 1, now); });
     relay.flush(now, [&](const sync::LineEnd& site, std::span<const std::uint8_t> datagram) { return line.send(site, datagram); });
     if (now < next_status) continue;

@@ -1,6 +1,7 @@
 // Tests of the conversion between sliders and degradation profiles.
 #include "scripts/live/sliders.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -133,4 +134,64 @@ TEST_CASE("Each stage of touch has sliders of its own, which change the rules of
   at["haptic:percept"] = at["haptic:action"] = {};
   const auto without = sync::parse_profile(with_sliders(changed, at), "without");
   CHECK(without.rules.size() == 3);
+}
+
+TEST_CASE("Each stage has the controls of its descriptor: every choice that its rules may have") {
+  const nlohmann::json controls = degradation_json("")["controls"];
+  int choices = 0;
+  for (const sync::KnownModality& m : sync::known_modalities())
+    for (const sync::StageDef& stage : m.stages) {
+      const std::string sense = m.name + ":" + stage.name;
+      if (stage.kind == sync::StageKind::kInput) {
+        CHECK_FALSE(controls.contains(sense));
+        continue;
+      }
+      INFO(sense);
+      const std::vector<std::string> attributes = sync::stage_attributes(stage.kind);
+      const auto has = [&](const std::string& name) { return std::find(attributes.begin(), attributes.end(), name) != attributes.end(); };
+      CHECK(controls[sense]["deadband"] == has("deadband"));
+      for (const sync::OperatorChoice& c : sync::operator_choices()) {
+        const auto& shown = controls[sense]["choices"];
+        const auto at = std::find_if(shown.begin(), shown.end(), [&](const nlohmann::json& j) { return j["name"] == c.name; });
+        REQUIRE((at != shown.end()) == has(c.is_word ? c.of : c.name));
+        if (at == shown.end()) continue;
+        ++choices;
+        CHECK((*at)["values"] == c.values);
+        // Each value makes a valid profile that shows this value.
+        for (const std::string& value : c.values) {
+          const std::string text = with_sliders("", {{sense, {.loss = 0.1, .deadband = 0.05, .choices = {{c.name, value}}}}});
+          CHECK(degradation_json(text)["senses"][sense]["choices"][c.name] == value);
+          CHECK(degradation_json(text)["senses"][sense]["deadband"] == 0.05);
+          CHECK(degradation_json(text)["senses"][sense]["more"] == false);
+        }
+      }
+    }
+  CHECK(choices >= 6);
+  CHECK(controls["haptic:force"]["choices"].size() == 3);
+}
+
+TEST_CASE("The deadband of a stage compares what the stage transmits, and its other words stay") {
+  const auto deadband = [](const std::string& profile) { return *sync::parse_profile(profile, "p").rules.at(0).deadband; };
+  CHECK(deadband(with_sliders("", {{"haptic:action", {.deadband = 0.1}}})).quantity == sync::Quantity::kVelocity);
+  CHECK(deadband(with_sliders("", {{"haptic:force", {.deadband = 0.1}}})).quantity == sync::Quantity::kForce);
+  const std::string rich = R"(<profile><degrade modality="haptic" stage="action" deadband="10% position floor=1mm lowpass=20Hz adaptive=0.2s/m resend=50ms"/></profile>)";
+  CHECK(with_sliders(rich, {{"haptic:action", {.deadband = 0.1}}}).find("floor=1mm lowpass=20Hz") != std::string::npos);
+  const sync::DeadbandDef wider = deadband(with_sliders(rich, {{"haptic:action", {.deadband = 0.3}}}));
+  CHECK((wider.fraction == Approx(0.3) && wider.floor == Approx(1e-3) && wider.lowpass_Hz == Approx(20) && wider.adaptive_s_m == Approx(0.2)));
+  CHECK((wider.resend_s == Approx(0.05) && wider.quantity == sync::Quantity::kPosition));
+  // A line ends the low-pass, with which it is refused.
+  const sync::DeadbandDef line = deadband(with_sliders(rich, {{"haptic:action", {.deadband = 0.1, .choices = {{"predict", "linear"}}}}}));
+  CHECK((line.predictor == sync::Predictor::kLinear && line.lowpass_Hz == 0 && line.resend_s == Approx(0.05)));
+  CHECK(sync::parse_profile(with_sliders(rich, {{"haptic:action", {.deadband = 0.0}}}), "p").rules.empty());
+}
+
+TEST_CASE("A choice without its slider, and one that a message does not name, change nothing") {
+  CHECK(sync::parse_profile(with_sliders("", {{"haptic:force", {.deadband = 0.0, .choices = {{"predict", "linear"}, {"conceal", "zero"}}}}}), "p").rules.empty());
+  const std::string codec = R"(<profile><degrade modality="haptic" stage="force" deadband="5% force predict=linear" delay="20ms" passivity="tdpa"/></profile>)";
+  const sync::Rule kept = sync::parse_profile(with_sliders(codec, {{"haptic:force", {.delay_ms = 40}}}), "p").rules.at(0);
+  CHECK((kept.passivity == sync::Passivity::kTdpa && kept.deadband->predictor == sync::Predictor::kLinear && kept.delay->delay_s == Approx(0.04)));
+  CHECK_FALSE(sync::parse_profile(with_sliders(codec, {{"haptic:force", {.delay_ms = 20, .choices = {{"passivity", "none"}}}}}), "p").rules.at(0).passivity);
+  CHECK_THROWS_AS(with_sliders("", {{"haptic:force", {.choices = {{"passivity", "magic"}}}}}), std::invalid_argument);
+  // The input has no such controls.
+  CHECK(sync::parse_profile(with_sliders("", {{"audio", {.deadband = 0.2, .choices = {{"passivity", "tdpa"}}}}}), "p").rules.empty());
 }

@@ -22,7 +22,7 @@ ODD = 0.03        # probability that a part is invalid, or at an end of its rang
 SENSES = ("audio", "visual", "haptic", "thermal")
 NUMBERS = ("NaN", "INF", "-INF", "", "x", "-1", "1e300", "0", " 7 ")
 LEVELS = ("5", "10", "100", "0.5", "1", "20", "50", "2")
-SPECIAL = {"frame_rate": "visual", "resolution": "visual", "response": "thermal"}
+SPECIAL = quantities.OUTPUT_OF
 
 
 class Author:

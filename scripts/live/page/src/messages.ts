@@ -12,10 +12,14 @@ export type Presentation = [time_s: number, modality: string, part: number, outc
 // source: header.source of the sender; 0: the process with that tag.
 export type Value = [variable: number, time_s: number, value: number, source: number];
 export interface Common { now: number; health?: NodeHealth[]; report?: { senses: ModalityReport[]; pairs: Pair[] }; tags?: VariableInfo[] }
-export interface SliderValues { delay_ms: number; rate_Hz: number; loss: number }
-// The profile in force; more: it contains operators of a modality that no slider shows. stages: all stages of modalities, each a sense
-// "MODALITY:STAGE".
-export interface Degradation { name: string; senses: Record<string, SliderValues & { more: boolean }>; stages: string[] }
+// deadband: a share of the value; choices: by the names of Choice.
+export interface SliderValues { delay_ms: number; rate_Hz: number; loss: number; deadband: number; choices: Record<string, string> }
+// A part of a rule that takes one of several names, the first of which changes nothing. of: the slider that must be above 0; "": none.
+export interface Choice { name: string; of: string; values: string[] }
+export interface Controls { deadband: boolean; choices: Choice[] }
+// The profile in force; more: it contains operators of a modality that no control shows. stages: all stages of modalities, each a sense
+// "MODALITY:STAGE"; controls: those of each stage beside delay, rate and loss.
+export interface Degradation { name: string; senses: Record<string, SliderValues & { more: boolean }>; stages: string[]; controls: Record<string, Controls> }
 // question: its name; kind "nothing": a trial is in progress. leader: the leading node; "": it publishes no health.
 export interface Study {
   question: string; kind: "nothing" | "read" | "choice" | "number"; text: string; choices: string[]; lowest: number; highest: number; step: number;

@@ -35,7 +35,9 @@ const report = { senses: ["audio", "haptic", "visual"].map((modality) => ({ moda
 const thresholds = [{ earlier: "audio", later: "visual", ms: 45, what: "detected", source: "ITU-R BT.1359-1" }, { earlier: "audio", later: "visual", ms: 90, what: "accepted", source: "ITU-R BT.1359-1" },
   { earlier: "visual", later: "audio", ms: 125, what: "detected", source: "ITU-R BT.1359-1" }];
 const hello = (live) => ({ t: "hello", live, title: "dark_room", thresholds, catalog: [{ name: "TOOL_STATE:force_N.z", unit: "N", about: "force" }], tags: [], now: 10, health, report });
-const frame = (more = {}) => ({ t: "frame", now: 12, health, report, world: { known: true, sim_s: 12, rate: 1 }, profile: "7", degradation: { name: "late sound", senses: { audio: { delay_ms: 40, rate_Hz: 0, loss: 0.1, more: true } }, stages: ["haptic:force", "haptic:percept"] },
+const controls = { "haptic:force": { deadband: true, choices: [{ name: "predict", of: "deadband", values: ["hold", "linear"] }, { name: "passivity", of: "", values: ["none", "tdpa"] }] },
+  "haptic:percept": { deadband: true, choices: [] } };
+const frame = (more = {}) => ({ t: "frame", now: 12, health, report, world: { known: true, sim_s: 12, rate: 1 }, profile: "7", degradation: { name: "late sound", senses: { audio: { delay_ms: 40, rate_Hz: 0, loss: 0.1, deadband: 0, choices: {}, more: true } }, stages: ["haptic:force", "haptic:percept"], controls },
   values: Array.from({ length: 40 }, (_, i) => [[0, 2 + i / 4, Math.sin(i / 3), 2], [0, 2 + i / 4, Math.cos(i / 3), 3], [1, 2 + i / 4, i / 40, 2], [2, 2 + i / 4, 31 + i / 40, 6]]).flat(),
   events: [[9, 0, 1, 2, 0], [9.5, 1, 1, 2, 0.8], [10, 2, 1, 2, 0]], presented: [[9.5, "audio", 0, 0, 11], [9.5, "visual", 0, 3, null], [9.6, "haptic", 1, 0, 2], [9.7, "audio", 0, 4, null]], pages: { open: 1, dropped: 0, refused: 0 }, ...more });
 const asked = (more) => ({ question: "5.11", kind: "choice", text: "Did sound and picture come together?", choices: ["together", "apart"], lowest: 0, highest: 0, step: 0, trial: 3, condition: "audio +80 ms",
@@ -146,7 +148,7 @@ await test("a run is paused, stepped and degraded by the keyboard alone, and a s
     await until("the slider has sent its value", async () => (await it.sent("degrade")).at(-1)?.senses.audio.delay_ms === 45 || it.sent("degrade"));
     assert.equal(await it.page.$eval("#audio-delay", (e) => e.getAttribute("aria-valuetext")), "45 ms");
     await it.page.evaluate(() => new Promise((done) => setTimeout(done, 1600)));  // SETTLE_MS of sliders.ts
-    await it.receive(frame({ degradation: { name: "other", senses: { audio: { delay_ms: 10, rate_Hz: 0, loss: 0, more: false } }, stages: [] } }));
+    await it.receive(frame({ degradation: { name: "other", senses: { audio: { delay_ms: 10, rate_Hz: 0, loss: 0, deadband: 0, choices: {}, more: false } }, stages: [], controls: {} } }));
     assert.equal(await it.focused(), "audio-delay");
     await it.page.focus("#pairs summary");
     await it.page.keyboard.press("Enter");

@@ -50,22 +50,32 @@ def plan(scene, folder, scene_folder, seed):
     return words
 
 
-def render(scene_xml, scene_folder, folder, seconds, size, seed=1):
-    """Writes log, sound, tables and pictures of `seconds` of a scene into a folder. size: (width, height) of the pictures. Returns the warnings of sim_node.
-    Raises Refusal."""
+def simulate(scene_xml, scene_folder, folder, seconds, seed=1):
+    """Writes the log of `seconds` of a scene, run.lcmlog, into a folder. Returns the standard error. Raises Refusal."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     scene = folder / "scene.sdf"
     scene.write_bytes(scene_xml)
     plan_file = folder / "plan.json"
     plan_file.write_text(json.dumps(plan(scene, folder, scene_folder, seed)) + "\n", encoding="utf-8")
-    said = output([BIN / "virtual_time", plan_file, "--seconds", f"{seconds:g}", "--seed", str(seed)])
+    return output([BIN / "virtual_time", plan_file, "--seconds", f"{seconds:g}", "--seed", str(seed)])
+
+
+def render(scene_xml, scene_folder, folder, seconds, size, seed=1):
+    """Writes log, sound, tables and pictures of `seconds` of a scene into a folder. size: (width, height) of the pictures. Returns the warnings of sim_node.
+    Raises Refusal."""
+    said = simulate(scene_xml, scene_folder, folder, seconds, seed)
     log = folder / "run.lcmlog"
     for exporter in ("export_csv", "export_events"):
         output([BIN / exporter, log, "--out", folder])
-    settings = {"rate": f"{pictures.LOOKS_HZ}Hz", "width": size[0], "height": size[1], "event_marker": "off", "video_crf": 0, "quality": 0}
     output([BIN / "visual_node", "--log", log, "--video", folder / "video.mp4", "--frames", folder / "frames.csv",
-            *(w for name, value in settings.items() for w in ("--set", f"{name}={value}"))])
+            *(w for setting in picture_settings(size) for w in ("--set", setting))])
     return [line for line in said.splitlines() if WARNING.match(line)]
+
+
+def picture_settings(size):
+    """[name=value] of the settings of visual_node. size: (width, height)."""
+    settings = {"rate": f"{pictures.LOOKS_HZ}Hz", "width": size[0], "height": size[1], "event_marker": "off", "video_crf": 0, "quality": 0}
+    return [f"{name}={value}" for name, value in settings.items()]
 
 
 def perceived(folder, windows, size):

@@ -4,6 +4,7 @@ The metrics of a condition come from a test signal that passes its operator, bec
 0.4 to 3 Hz. It is compared with the undegraded one, as of_run.py compares forces. A metric predicts well when a monotone curve of success against it, fitted to all other
 operators of a modality, predicts the games of the operator that was left out.
 """
+import functools
 import json
 import pathlib
 
@@ -12,7 +13,8 @@ import numpy as np
 from tactus.metrics import age, compare
 
 STORED = pathlib.Path(__file__).with_name("ranking.json")
-STREAM_HZ = {"haptic": 1000.0, "visual": 60.0}  # rate of the undegraded stream of a modality
+STREAM_HZ = {"haptic": 1000.0, "visual": 60.0, "audio": 60.0, "thermal": 60.0}  # rate of the undegraded stream of a modality; of the last two, CONTACTS
+PLAYED = ("haptic", "visual")  # modalities of the games that the stored ranking is of; the player hardly uses the others
 OPERATORS = ("delay", "jitter", "loss", "rate")
 JITTER_DELAY = 3      # constant delay of a jitter, in standard deviations: scripts/python/tactus/study/quantities.py
 SECONDS, GRID_HZ, MAX_LAG_S = 20.0, 200.0, 0.8
@@ -45,6 +47,7 @@ def delivered(modality, operator, level, seed=1):
     return made, made
 
 
+@functools.lru_cache(maxsize=None)
 def of_condition(modality, operator, level):
     """{metric: value} of METRICS for a condition of a study."""
     made, arrived = delivered(modality, operator, level)
@@ -81,35 +84,63 @@ def log_loss_bits(won, games, p, least=0.01):
 def rank(conditions):
     """The ranking, best first: [{"metric", "loss_bits", "skill", "groups": {"MODALITY OPERATOR": loss}}]. conditions: dictionaries with modality, operator ("" for
     none), level, won, games and metrics. skill: 1 - loss / loss of the mean success of the other operators."""
-    groups = [(m, o) for m in STREAM_HZ for o in OPERATORS if any((c["modality"], c["operator"]) == (m, o) for c in conditions)]
+    groups = [(m, o) for m in PLAYED for o in OPERATORS if any((c["modality"], c["operator"]) == (m, o) for c in conditions)]
     found = []
     for metric in METRICS:
-        sign = -1 if metric == "force_hssim_like" else 1  # more similar is better
         losses, nulls = {}, []
         for modality, operator in groups:
             train = [c for c in conditions if c["modality"] == modality and c["operator"] != operator]
             test = [c for c in conditions if (c["modality"], c["operator"]) == (modality, operator)]
             column = lambda rows, key: np.array([row[key] for row in rows], dtype=float)
-            value = lambda rows: sign * np.array([row["metrics"][metric] for row in rows])
             games = column(train, "games")
-            x, y = falling(value(train), column(train, "won") / games, games)
+            x, y = falling(rising(metric, train), column(train, "won") / games, games)
             won, of = column(test, "won"), column(test, "games")
-            losses[f"{modality} {operator}"] = log_loss_bits(won, of, np.interp(value(test), x, y))
+            losses[f"{modality} {operator}"] = log_loss_bits(won, of, np.interp(rising(metric, test), x, y))
             nulls.append(log_loss_bits(won, of, np.full(len(test), np.sum(column(train, "won")) / np.sum(games))))
         loss = float(np.mean(list(losses.values())))
         found.append({"metric": metric, "loss_bits": round(loss, 4), "skill": round(1 - loss / float(np.mean(nulls)), 4), "groups": {k: round(v, 4) for k, v in losses.items()}})
     return sorted(found, key=lambda row: row["loss_bits"])
 
 
+def rising(metric, conditions):
+    """Values of a metric of conditions, with the sign with which they rise with the degradation."""
+    sign = -1 if metric == "force_hssim_like" else 1  # more similar is better
+    return sign * np.array([c["metrics"][metric] for c in conditions])
+
+
+def rank_by_task(conditions):
+    """As rank(), with each task left out in turn: [{"metric", "loss_bits", "skill", "explained", "groups": {TASK: loss}}]. conditions: dictionaries with task,
+    success (a share) and games under the condition, chance and undegraded success of the task, and metrics. The curve gives the success relative to chance and to
+    the undegraded success. explained: 1 - (loss - least) / (loss of the mean - least); least is the loss of a prediction by the measured success itself."""
+    found = []
+    column = lambda rows, key: np.array([row[key] for row in rows], dtype=float)
+    span = lambda rows: column(rows, "undegraded") - column(rows, "chance")
+    relative = lambda rows: (column(rows, "success") - column(rows, "chance")) / np.maximum(span(rows), 1e-9)
+    for metric in METRICS:
+        losses, nulls, least = {}, [], []
+        for task in dict.fromkeys(c["task"] for c in conditions):
+            train, test = ([c for c in conditions if (c["task"] == task) == own] for own in (False, True))
+            games = column(test, "games")
+            loss = lambda r: log_loss_bits(column(test, "success") * games, games, column(test, "chance") + np.clip(r, 0, 1) * span(test))
+            x, y = falling(rising(metric, train), relative(train), column(train, "games"))
+            losses[task] = loss(np.interp(rising(metric, test), x, y))
+            nulls.append(loss(np.full(len(test), np.average(relative(train), weights=column(train, "games")))))
+            least.append(log_loss_bits(column(test, "success") * games, games, column(test, "success")))
+        mean, null, best = (float(np.mean(v)) for v in (list(losses.values()), nulls, least))
+        found.append({"metric": metric, "loss_bits": round(mean, 4), "skill": round(1 - mean / null, 4), "explained": round(1 - (mean - best) / max(null - best, 1e-9), 4),
+                      "groups": {k: round(v, 4) for k, v in losses.items()}})
+    return sorted(found, key=lambda row: row["loss_bits"])
+
+
 def conditions_of(rows):
-    """The conditions of the rows of a table of games (study/trial_table.py, docs/study_formats.md) that degrade one modality of STREAM_HZ by one of OPERATORS, and the undegraded one for each
+    """The conditions of the rows of a table of games (study/trial_table.py, docs/study_formats.md) that degrade one modality of PLAYED by one of OPERATORS, and the undegraded one for each
     modality, with their metrics."""
     counts = {}
     for row in rows:
         if row["second_modality"] or row["success"] not in (0, 1) or (row["operator"] and row["operator"] not in OPERATORS):
             continue
-        for modality in ([row["modality_degraded"]] if row["operator"] else STREAM_HZ):
-            if modality in STREAM_HZ:
+        for modality in ([row["modality_degraded"]] if row["operator"] else PLAYED):
+            if modality in PLAYED:
                 own = counts.setdefault((modality, row["operator"], float(row["level"] or 0)), [0, 0])
                 own[0] += row["success"]
                 own[1] += 1
