@@ -29,6 +29,7 @@ class BelievedBall {
   void hear_fall(double probability);
 
   Eigen::Vector3d place_m();  // its centre, on the floor
+  Eigen::Vector3d place_before_m(double age_s);
   Eigen::Vector3d speed_m_s();
   double sd_m();  // of the place, the larger of both axes
   double in_hole() const { return in_hole_; }

@@ -32,6 +32,8 @@ class ObserverPlayer {
   // Where the eye looks.
   Eigen::Vector3d gaze_m();
   Action action() const { return action_; }
+  // Where it wants the hand; for inspection.
+  const Eigen::Vector3d& target_m() const { return target_m_; }
   // The current goal; the number of goals: all are believed to be reached.
   int goal() const { return goal_; }
 

@@ -12,7 +12,7 @@ from tactus.refusal import Refusal
 from tactus.study import trial_table
 
 FILES = ("trials.csv", "games.csv")
-MOST_NAMED = 3  # players in a title; design
+MAX_NAMED = 3  # players in a title; design
 DEEPEST = 4  # design: OUT/study/participant/session/trials.csv
 TEXTS = {name for name, column in trial_table.COLUMNS.items() if column.kind == "text"} | {"seed"}  # a seed may need more than 53 bits
 # Columns that identify a row; a repeated row is refused.
@@ -55,7 +55,7 @@ class Trials:
         if "simulated" not in kinds or not named:
             return " and ".join(kinds)
         failed = len({player for player, checks in zip(self["player"], self["failed_checks"]) if checks not in ("", "none")})
-        who = ", ".join(named) if len(named) <= MOST_NAMED else f"{len(named)} players, {named[0]} to {named[-1]}"
+        who = ", ".join(named) if len(named) <= MAX_NAMED else f"{len(named)} players, {named[0]} to {named[-1]}"
         return " and ".join(kinds) + f" ({who}{f'; {failed} of them fail a check' if failed else ''})"
 
 
