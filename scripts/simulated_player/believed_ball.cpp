@@ -46,8 +46,8 @@ BelievedBall::BelievedBall(const Goal& goal, const Viewer& viewer, const Vector3
   }
 }
 
-void BelievedBall::predict(const Vector3d& acceleration_m_s2) {
-  for (std::size_t i = 0; i < 2; ++i) filters_[i].predict(axes_[i].dot(acceleration_m_s2));
+void BelievedBall::predict(const Vector3d& acceleration_m_s2, const Vector3d& push_m_s2) {
+  for (std::size_t i = 0; i < 2; ++i) filters_[i].predict(axes_[i].dot(acceleration_m_s2), axes_[i].cwiseProduct(push_m_s2).norm());
 }
 
 double BelievedBall::at_hole_probability(double age_s) {

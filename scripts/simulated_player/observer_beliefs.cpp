@@ -224,6 +224,20 @@ Vector3d ObserverBeliefs::expected_acceleration_m_s2(int goal) {
   return roll + std::clamp(closing / kPushed_s, 0.0, kLargestPush_m_s2) * n;
 }
 
+// Standard deviation of the push of a hand that may or may not touch the ball: the places of both are unsure, and so is the
+// direction of the contact. Without it the player would trust its prediction more than its eyes after each push.
+Vector3d ObserverBeliefs::possible_push_m_s2(int goal) {
+  BelievedBall& it = ball(goal);
+  const Vector3d to_ball = level(it.place_m() - hand_.place_m());
+  const double distance_m = std::max(to_ball.norm(), 1e-6), contact_m = contact_distance_m(goal);
+  const Vector3d n = to_ball / distance_m;
+  const double unsure_m = std::hypot(std::sqrt(hand_.variance_m2(n)), it.sd_m());
+  if (std::abs(distance_m - contact_m) > 2 * unsure_m || hand_.place_m().z() > 2 * rules_.goals[static_cast<std::size_t>(goal)].ball_radius_m)
+    return Vector3d::Zero();
+  const double push = std::min(level(hand_.speed_m_s() - it.speed_m_s()).norm() / kPushed_s, kLargestPush_m_s2), turn = std::min(1.0, unsure_m / contact_m);
+  return push * Vector3d(std::hypot(n.x(), turn), std::hypot(n.y(), turn), 0);
+}
+
 void ObserverBeliefs::predict(double now_s, const Vector3d& command_N, int goal) {
   now_s_ = now_s;
   for (int i = 0; i < static_cast<int>(balls_.size()); ++i) {
@@ -232,13 +246,15 @@ void ObserverBeliefs::predict(double now_s, const Vector3d& command_N, int goal)
     // A ball that rests on a slope is held by something.
     const bool rolls = seen_ago_s < kRollsUnseen_s && it.speed_m_s().norm() > kRests_m_s;
     Vector3d acceleration = rolls ? Vector3d(kRollingShare * rules_.slope_m_s2) : Vector3d(Vector3d::Zero());
+    Vector3d push = Vector3d::Zero();
     if (i == goal) {
+      push = possible_push_m_s2(i);
       const double before_m = gap_m_;
       const Vector3d expected = expected_acceleration_m_s2(i);
       if (rolls || gap_m_ <= kTouchesAt_m) acceleration = expected;
       if (gap_m_ <= kTouchesAt_m && before_m > kTouchesAt_m) touching_s_ = now_s;
     }
-    it.predict(acceleration);
+    it.predict(acceleration, push);
     if (it.at_hole_probability(0) > 0.5) {
       if (now_s - it.at_hole_s > kBinding_s) it.at_hole_s = now_s;
     }

@@ -1,6 +1,4 @@
 // The observer player on the bus: number N of a population, with its arm.
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <utility>
 
@@ -51,16 +49,6 @@ class ObserverBody : public PlayerBody {
       for (const Sound& sound : sounds) player_->senses().play(sound);
     const Eigen::Vector3d command_N = player_->step(sync::to_seconds(tick.now - start), arm_.position_m(), felt_N, runs);
     if (runs) arm_.step(command_N, tick.force_N, tick.dt_s);
-    // TRACE
-    if (picture) last_ = *picture;
-    if (static std::FILE* f = std::getenv("OBS_TRACE") ? std::fopen(std::getenv("OBS_TRACE"), "w") : nullptr; f && runs && ++ticks_ % 10 == 0) {
-      const int g = player_->goal();
-      const bool ok = g < static_cast<int>(rules_.goals.size());
-      const Eigen::Vector3d tb = ok && last_.balls.size() > static_cast<std::size_t>(g) && last_.balls[static_cast<std::size_t>(g)] ? last_.balls[static_cast<std::size_t>(g)]->at_m : Eigen::Vector3d(9, 9, 9);
-      const Eigen::Vector3d bb = ok ? player_->beliefs().ball(g).place_m() : Eigen::Vector3d(9, 9, 9), h = arm_.position_m(), bh = player_->beliefs().hand().place_m(), t = player_->target_m(), u = tick.force_N;
-      std::fprintf(f, "%.3f %d %d %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.4f %.3f %.3f %.3f %.3f %.3f %.4f\n", sync::to_seconds(tick.now - start), static_cast<int>(player_->action()), g, tb.x(), tb.y(), tb.z(), bb.x(), bb.y(), h.x(), h.y(), h.z(), bh.x(), bh.y(), bh.z(), t.x(), t.y(), t.z(), command_N.norm(), u.x(), u.y(), u.z(), ok ? player_->beliefs().ball(g).in_hole() : -1, ok && picture && picture->balls[static_cast<std::size_t>(g)] ? picture->balls[static_cast<std::size_t>(g)]->visible_px : -1., ok ? player_->beliefs().ball(g).sd_m() : -1);
-      std::fflush(f);
-    }
   }
   Eigen::Vector3d position_m() const override { return arm_.position_m(); }
   Eigen::Vector3d velocity_m_s() const override { return arm_.velocity_m_s(); }
@@ -77,8 +65,6 @@ class ObserverBody : public PlayerBody {
   std::optional<ObserverPlayer> player_;
   std::optional<sync::HostTime> start_;
   bool began_ = false;
-  Picture last_{};
-  long ticks_ = 0;
 };
 
 }  // namespace
