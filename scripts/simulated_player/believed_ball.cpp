@@ -46,8 +46,8 @@ BelievedBall::BelievedBall(const Goal& goal, const Viewer& viewer, const Vector3
   }
 }
 
-void BelievedBall::predict(const Vector3d& acceleration_m_s2) {
-  for (std::size_t i = 0; i < 2; ++i) filters_[i].predict(axes_[i].dot(acceleration_m_s2));
+void BelievedBall::predict(const Vector3d& acceleration_m_s2, const Vector3d& push_m_s2) {
+  for (std::size_t i = 0; i < 2; ++i) filters_[i].predict(axes_[i].dot(acceleration_m_s2), axes_[i].cwiseProduct(push_m_s2).norm());
 }
 
 double BelievedBall::at_hole_probability(double age_s) {
@@ -93,8 +93,10 @@ void BelievedBall::locate(double age_s, const Vector3d& at_m, const Vector3d& aw
 
 void BelievedBall::hear_fall(double probability) { in_hole_ = std::clamp(in_hole_ + (1 - in_hole_) * probability, kLeast, 1 - kLeast); }
 
-Vector3d BelievedBall::place_m() {
-  Vector3d at = axes_[0] * filters_[0].mean()[0] + axes_[1] * filters_[1].mean()[0];
+Vector3d BelievedBall::place_m() { return place_before_m(0); }
+
+Vector3d BelievedBall::place_before_m(double age_s) {
+  Vector3d at = axes_[0] * filters_[0].mean_before(age_s)[0] + axes_[1] * filters_[1].mean_before(age_s)[0];
   at.z() = goal_.hole_m.z() + goal_.ball_radius_m;
   return at;
 }

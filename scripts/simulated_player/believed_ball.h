@@ -15,8 +15,9 @@ class BelievedBall {
   // sd_m: of the first guess.
   BelievedBall(const Goal& goal, const Viewer& viewer, const Eigen::Vector3d& guess_m, double sd_m);
 
-  // One step of kSampleStep_s in which the ball is believed to accelerate so, m/s^2.
-  void predict(const Eigen::Vector3d& acceleration_m_s2);
+  // One step of kSampleStep_s in which the ball is believed to accelerate so, m/s^2. push_m_s2: the standard deviation, along each
+  // axis of the world, of an acceleration by a hand that may touch it.
+  void predict(const Eigen::Vector3d& acceleration_m_s2, const Eigen::Vector3d& push_m_s2 = Eigen::Vector3d::Zero());
   // A place on the floor that is believed to be age_s old. away: horizontal unit vector from the eye; the standard deviations
   // are along it and across it. The place is weighed as one of a ball on the floor and as one of a ball in the hole, and is
   // applied while the former is more probable.
@@ -29,6 +30,7 @@ class BelievedBall {
   void hear_fall(double probability);
 
   Eigen::Vector3d place_m();  // its centre, on the floor
+  Eigen::Vector3d place_before_m(double age_s);
   Eigen::Vector3d speed_m_s();
   double sd_m();  // of the place, the larger of both axes
   double in_hole() const { return in_hole_; }

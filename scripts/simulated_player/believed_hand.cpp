@@ -72,6 +72,12 @@ void BelievedHand::see(double age_s, const Vector3d& hand_m, double sd_m, double
   }
 }
 
+void BelievedHand::see_across(double age_s, const Vector3d& hand_m, double sd_m) {
+  static const observer::Vector h = measures(false);
+  const Vector3d reference = axes_.transpose() * (hand_m - offset_m_);
+  for (std::size_t i = 0; i < 2; ++i) filters_[i].measure(age_s, h, reference[static_cast<Eigen::Index>(i)], sd_m * sd_m);
+}
+
 void BelievedHand::feel_load(const Vector3d& force_N) {
   offset_m_ = force_N / (player_.stiffness_N_m + player_.stiffness_rise_1_m * force_N.norm());
 }

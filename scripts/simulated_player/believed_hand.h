@@ -24,6 +24,8 @@ class BelievedHand {
   void feel_place(double age_s, const Eigen::Vector3d& hand_m, double sd_m);
   // A seen place.
   void see(double age_s, const Eigen::Vector3d& hand_m, double sd_m, double depth_sd_m);
+  // A place of which only the parts along the first axes of the viewer are known, right and up, each with this standard deviation.
+  void see_across(double age_s, const Eigen::Vector3d& hand_m, double sd_m);
   // The felt force: the arm yields to it as its own spring does, and the player expects that.
   void feel_load(const Eigen::Vector3d& force_N);
 

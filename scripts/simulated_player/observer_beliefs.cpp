@@ -26,6 +26,7 @@ constexpr double kBinding_s = 3;        // an older event has no believed time
 constexpr double kHoleSpread_deg = 20;  // of the directions of sounds (design)
 constexpr double kDullIsFall = 0.9;     // as heard: De Pra, Fontana and Papetti 2020
 constexpr double kLostSd_m = 0.08;
+constexpr double kOnFloor = 0.1;        // a ball on the floor: the probability that it is in its hole is below this (design)
 constexpr std::uint64_t kJudgementStream = 111;
 
 Vector3d level(const Vector3d& v) { return {v.x(), v.y(), 0}; }
@@ -99,7 +100,9 @@ void ObserverBeliefs::apply(const SightPercept& sight, double arrival_s, int goa
   }
 }
 
-// The line of sight meets the height at which a ball on the floor has its centre. Beside the seen hand the gap to it is finer.
+// The line of sight meets the height at which a ball on the floor has its centre. The gap between ball and hand in the picture is
+// finer than the direction of either: it locates the hand, whose place is less sure, beside the ball. So an error of the believed
+// place of the hand does not become one of the ball, and both agree where they meet.
 void ObserverBeliefs::apply_ball(const SightPercept::Ball& seen, double age_s, int goal) {
   const Goal& rules = rules_.goals[static_cast<std::size_t>(goal)];
   const double height_m = rules.hole_m.z() + rules.ball_radius_m;
@@ -107,17 +110,14 @@ void ObserverBeliefs::apply_ball(const SightPercept::Ball& seen, double age_s, i
   const double sine = std::max(line.sine, 0.1), steep = line.cosine / sine;
   BelievedBall& ball = balls_[static_cast<std::size_t>(goal)];
   const double blur_m = ball.speed_m_s().norm() * sight_delay_.variability_s();
-  if (seen.gap_m) {
-    const Vector3d hand = hand_.place_before_m(age_s);
-    const double away_m = (seen.gap_m->y() - line.cosine * (height_m - hand.z())) / sine;
-    const double height_sd_m = std::sqrt(hand_.variance_m2(Vector3d::UnitZ())) * steep;
-    const Vector3d at = hand + away_m * line.away + seen.gap_m->x() * line.right;
-    ball.see(age_s, at, line.away, std::hypot(seen.gap_sd_m / sine, height_sd_m, blur_m), std::hypot(seen.gap_sd_m, blur_m));
-    return;
-  }
   const double down_m = seen.point_m.z() - height_m;
   const Vector3d at = seen.point_m + down_m * steep * line.away;
   ball.see(age_s, at, line.away, std::hypot(seen.sd_m / sine, blur_m), std::hypot(seen.sd_m, blur_m));
+  if (!seen.gap_m || ball.in_hole() > kOnFloor) return;
+  const Vector3d hand = hand_.place_before_m(age_s), sight = line.right.cross(line.up);
+  Vector3d beside = ball.place_before_m(age_s) - seen.gap_m->x() * line.right - seen.gap_m->y() * line.up;
+  beside += sight.dot(hand - beside) * sight;  // the picture does not show its depth
+  hand_.see_across(age_s, beside, std::hypot(seen.gap_sd_m, ball.sd_m() * sine, blur_m));
 }
 
 void ObserverBeliefs::apply(const ForcePercept& touch, double arrival_s, int goal, bool feels_ball) {
@@ -224,6 +224,20 @@ Vector3d ObserverBeliefs::expected_acceleration_m_s2(int goal) {
   return roll + std::clamp(closing / kPushed_s, 0.0, kLargestPush_m_s2) * n;
 }
 
+// Standard deviation of the push of a hand that may or may not touch the ball: the places of both are unsure, and so is the
+// direction of the contact. Without it the player would trust its prediction more than its eyes after each push.
+Vector3d ObserverBeliefs::possible_push_m_s2(int goal) {
+  BelievedBall& it = ball(goal);
+  const Vector3d to_ball = level(it.place_m() - hand_.place_m());
+  const double distance_m = std::max(to_ball.norm(), 1e-6), contact_m = contact_distance_m(goal);
+  const Vector3d n = to_ball / distance_m;
+  const double unsure_m = std::hypot(std::sqrt(hand_.variance_m2(n)), it.sd_m());
+  if (std::abs(distance_m - contact_m) > 2 * unsure_m || hand_.place_m().z() > 2 * rules_.goals[static_cast<std::size_t>(goal)].ball_radius_m)
+    return Vector3d::Zero();
+  const double push = std::min(level(hand_.speed_m_s() - it.speed_m_s()).norm() / kPushed_s, kLargestPush_m_s2), turn = std::min(1.0, unsure_m / contact_m);
+  return push * Vector3d(std::hypot(n.x(), turn), std::hypot(n.y(), turn), 0);
+}
+
 void ObserverBeliefs::predict(double now_s, const Vector3d& command_N, int goal) {
   now_s_ = now_s;
   for (int i = 0; i < static_cast<int>(balls_.size()); ++i) {
@@ -232,13 +246,15 @@ void ObserverBeliefs::predict(double now_s, const Vector3d& command_N, int goal)
     // A ball that rests on a slope is held by something.
     const bool rolls = seen_ago_s < kRollsUnseen_s && it.speed_m_s().norm() > kRests_m_s;
     Vector3d acceleration = rolls ? Vector3d(kRollingShare * rules_.slope_m_s2) : Vector3d(Vector3d::Zero());
+    Vector3d push = Vector3d::Zero();
     if (i == goal) {
+      push = possible_push_m_s2(i);
       const double before_m = gap_m_;
       const Vector3d expected = expected_acceleration_m_s2(i);
       if (rolls || gap_m_ <= kTouchesAt_m) acceleration = expected;
       if (gap_m_ <= kTouchesAt_m && before_m > kTouchesAt_m) touching_s_ = now_s;
     }
-    it.predict(acceleration);
+    it.predict(acceleration, push);
     if (it.at_hole_probability(0) > 0.5) {
       if (now_s - it.at_hole_s > kBinding_s) it.at_hole_s = now_s;
     }

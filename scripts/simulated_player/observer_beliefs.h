@@ -52,6 +52,7 @@ class ObserverBeliefs {
   void apply(const SoundPercept& sound, double arrival_s, int goal);
   void match_seen_hand(double arrival_s);
   Eigen::Vector3d expected_acceleration_m_s2(int goal);
+  Eigen::Vector3d possible_push_m_s2(int goal);
 
   struct TimedPlace {
     double time_s;

@@ -20,7 +20,8 @@ constexpr double kSlowsDown = 3.2;
 constexpr double kPaceStep = 1.05;  // the feedback is computed again after this change of the rate
 constexpr double kTravelHeight_m = 0.13, kPassed_m = 0.05, kBehindGap_m = 0.02, kStill_m_s = 0.08;
 constexpr double kMoved_m = 0.03;          // a ball that has moved this far is approached again
-constexpr double kRolls_m_s = 0.15;        // the hand does not come down on a ball that rolls faster
+constexpr double kRolls_m_s = 0.4;         // the hand does not come down on a ball that rolls faster: it could not follow
+constexpr double kOver_m = 0.08, kHighestOver_m = 0.32;  // over things that held the hand on its way
 constexpr double kTolerance_m = 0.010;     // beside a place, for the typical caution
 constexpr double kLead_m = 0.03;           // of the moving target of a push before the hand
 constexpr double kGentle_N = 1.5;          // a push with more force slows down
@@ -112,6 +113,8 @@ void ObserverPlayer::update_pace() {
 
 bool ObserverPlayer::is_held() const { return now_s_ - beliefs_.last_free_s() > kHeldFor_s; }
 
+double ObserverPlayer::travel_height_m() const { return kTravelHeight_m + over_m_; }
+
 Vector3d ObserverPlayer::direction_to_hole() {
   const Vector3d ball = beliefs_.ball(goal_).place_m(), d = on_floor(target().hole_m - ball);
   if (d.norm() < 1e-3 || (d.norm() < kFreeze_m && action_ == Action::kPush)) return direction_;
@@ -143,11 +146,15 @@ Vector3d ObserverPlayer::clamped_to_floor(const Vector3d& at) const {
 }
 
 bool ObserverPlayer::arrived(const Vector3d& at, double tolerance_m) {
-  return (beliefs_.hand().place_m() - at).norm() < tolerance_m / std::sqrt(player_.caution) && beliefs_.hand().speed_m_s().norm() < kStill_m_s;
+  return (beliefs_.hand().place_m() - at).norm() < tolerance_m / std::sqrt(player_.caution) && (beliefs_.hand().speed_m_s() - target_m_s_).norm() < kStill_m_s;
 }
 
 void ObserverPlayer::act() {
-  if (is_held() && action_ != Action::kRise && action_ != Action::kDone) begin(Action::kRise);
+  if (is_held() && action_ != Action::kRise && action_ != Action::kDone) {
+    // Something stands in the way: the next way leads over it.
+    if (action_ == Action::kTravel) over_m_ = std::min(over_m_ + kOver_m, kHighestOver_m);
+    begin(Action::kRise);
+  }
   switch (action_) {
     case Action::kTravel: return travel();
     case Action::kDescend: return descend();
@@ -164,20 +171,27 @@ void ObserverPlayer::rise() {
     return;
   }
   target_m_ = from_m_;
-  target_m_.z() = kTravelHeight_m;
-  if (action_ == Action::kRise && has_goal() && std::abs(beliefs_.hand().place_m().z() - kTravelHeight_m) < kPassed_m) begin(Action::kTravel);
+  target_m_.z() = travel_height_m();
+  if (action_ == Action::kRise && has_goal() && std::abs(beliefs_.hand().place_m().z() - travel_height_m()) < kPassed_m) begin(Action::kTravel);
 }
 
 void ObserverPlayer::travel() {
   target_m_ = clamped_to_floor(behind_ball_m(kBehindGap_m));
   const Vector3d on_the_way = on_floor(beliefs_.hand().place_m() - target_m_);
-  target_m_.z() = kTravelHeight_m;
+  target_m_.z() = travel_height_m();
+  follow();
   const bool rolls = beliefs_.sees(goal_) && beliefs_.ball(goal_).speed_m_s().norm() > kRolls_m_s;
-  if (on_the_way.norm() < kTolerance_m / std::sqrt(player_.caution) && !rolls) begin(Action::kDescend);
+  if (on_the_way.norm() < kTolerance_m / std::sqrt(player_.caution) && !rolls) begin(Action::kDescend), over_m_ = 0;
+}
+
+// Pursues a seen ball that rolls: the hand moves with its speed, so that it does not stay behind.
+void ObserverPlayer::follow() {
+  if (beliefs_.sees(goal_)) target_m_s_ = beliefs_.ball(goal_).speed_m_s();
 }
 
 void ObserverPlayer::descend() {
   target_m_ = clamped_to_floor(behind_ball_m(kBehindGap_m));
+  follow();
   const bool rolls = beliefs_.sees(goal_) && beliefs_.ball(goal_).speed_m_s().norm() > kRolls_m_s;
   if (on_floor(beliefs_.hand().place_m() - target_m_).norm() > kMoved_m || rolls)
     decide(Action::kRise);
@@ -209,6 +223,9 @@ void ObserverPlayer::push() {
   }
   // The steering law: the time for each contact width is the pace of a bit.
   double speed_m_s = distance_m * rate_1_s_ / std::numbers::ln2;
+  // A light thing leaves an elastic impact with up to twice the closing speed. At half of the speed of the push it does not run
+  // away from the hand, which could not steer it then.
+  speed_m_s = std::min(speed_m_s, std::max(0.0, ball.speed_m_s().dot(u)) + speed_m_s / 2);
   const double force_N = on_floor(beliefs_.force_N()).norm();
   if (beliefs_.feels_contact() && force_N > kGentle_N) speed_m_s *= kGentle_N / force_N;
   const double whole_delay_s = beliefs_.sight_delay().believed_s() + beliefs_.sight_delay().noticed_s();

@@ -32,6 +32,8 @@ class ObserverPlayer {
   // Where the eye looks.
   Eigen::Vector3d gaze_m();
   Action action() const { return action_; }
+  // The goal of the hand, m; for inspection.
+  const Eigen::Vector3d& target_m() const { return target_m_; }
   // The current goal; the number of goals: all are believed to be reached.
   int goal() const { return goal_; }
 
@@ -43,6 +45,7 @@ class ObserverPlayer {
   void act();
   void rise();
   void travel();
+  void follow();
   void descend();
   void push();
   void search();
@@ -57,6 +60,7 @@ class ObserverPlayer {
   Eigen::Vector3d direction_to_hole();
   bool arrived(const Eigen::Vector3d& at, double tolerance_m);
   bool is_held() const;
+  double travel_height_m() const;
 
   observer::PlayerParameters player_;
   Rules rules_;
@@ -78,6 +82,7 @@ class ObserverPlayer {
   double aside_m_ = 0;                                                            // wanted offset of the ball across it
   double search_radius_m_ = 0, search_angle_rad_ = 0;
   double pushed_m_ = 0, wait_until_s_ = 0;  // move and wait
+  double over_m_ = 0;                       // added to the height of a way on which something held the hand
 };
 
 }  // namespace tactus::simulated_player

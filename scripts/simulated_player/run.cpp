@@ -10,12 +10,14 @@
 // When an input is lost, it continues without it. Run it together with haptic_node --device external:player.
 #include "scripts/simulated_player/run.h"
 
+#include <cstdio>
 #include <optional>
 #include <tactus/device_force_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/node_health_t.hpp>
 #include <tactus/sim_reply_t.hpp>
 
+#include "scripts/simulated_player/observer_admission.h"
 #include "scripts/simulated_player/player_body.h"
 #include "scripts/simulated_player/setup.h"
 #include "sim_node/scene/scene_folders.h"
@@ -45,7 +47,7 @@ Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::
 int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
   sync::Arguments app;
   sync::NodeOptions options;
-  std::string scene_file, device = "player", player = "stage_model";
+  std::string scene_file, device = "player", player = "stage_model", checks = "require";
   Scatter scatter;
   BodyDef body_def;
   body_def.rest_m = {kRest_m[0], kRest_m[1], kRest_m[2]};
@@ -65,12 +67,19 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
                  "stage_model: fixed rules; observer: perceives and moves as a typical person; observer:N: person N of a population")
       .show_default();
   app.add_option("--population", body_def.population_seed, "seed of the population of --player observer:N").show_default();
+  app.add_option("--checks", checks,
+                 "for an observer:N that fails one of the twelve checks: require: it does not play; count: it plays, and the checks are named; "
+                 "skip: they are not run")
+      .show_default();
   app.add_option("--practice", body_def.practice, "actions whose effects an observer perceived before the game; 0: it does not know the delays")
       .range(0, 100000)
       .show_default();
   app.add_option("--reaction", body_def.stage_model.reaction_s, "of stage_model: reaction time to sight and hearing, s").range(0.0, 2.0).show_default();
   sync::parse_or_exit(app, kSimulatedPlayer.name, argc, argv);
   body_def.choice = player_choice(player);
+  if (const std::vector<int> failed = Admission().admit(body_def.choice, body_def.population_seed, check_policy(checks)); !failed.empty())
+    std::fprintf(stderr, "simulated_player: %s; its results are not those of a player that is like people\n",
+                 failed_sentence(body_def.choice, body_def.population_seed, failed).c_str());
   const Rules rules = read_before ? *read_before : read_rules(scene_file, folders);
 
   sync::Node node(kSimulatedPlayer, options);

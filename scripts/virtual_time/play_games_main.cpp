@@ -17,6 +17,7 @@
 
 #include "audio_node/run.h"
 #include "haptic_node/run.h"
+#include "scripts/simulated_player/observer_admission.h"
 #include "scripts/simulated_player/player_choice.h"
 #include "scripts/simulated_player/rules.h"
 #include "scripts/simulated_player/run.h"
@@ -54,6 +55,7 @@ struct GameDef {
   std::string player;   // as --player of simulated_player; empty: its default
   std::uint64_t population = 1;
   int practice = 0;
+  std::string checks = "require";  // as --checks of simulated_player
 };
 
 // Runs a program with these arguments, as main() gets them.
@@ -98,7 +100,7 @@ GameVerdict play(const Loaded& loaded, const GameDef& game) {
   std::vector<std::string> player = words({"simulated_player", loaded.scene, "--device", "participant"}, loaded.scatter);
   if (!game.player.empty())
     player.insert(player.end(), {"--player", game.player, "--population", std::to_string(game.population), "--practice",
-                                 std::to_string(game.practice)});
+                                 std::to_string(game.practice), "--checks", "skip"});
   add("participant", words(player, degraded),
       [&](int argc, char** argv) { return simulated_player::run(argc, argv, &loaded.rules); });
   add("sim_node", words({"sim_node", loaded.scene, "--await", "participant"}, degraded),
@@ -172,7 +174,7 @@ json play_in_process(const Loaded& loaded, const GameDef& game) {
 int main(int argc, char** argv) try {
   sync::Arguments app(
       "Plays games of the simulated player in virtual time: a JSON line on stdin for each, "
-      "{\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML, \"player\": NAME, \"population\": SEED, \"practice\": N}, "
+      "{\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML, \"player\": NAME, \"population\": SEED, \"practice\": N, \"checks\": RULE}, "
       "and one on stdout.");
   Loaded loaded;
   std::string
@@ -197,6 +199,7 @@ int main(int argc, char** argv) try {
   std::vector<std::string> warnings;
   loaded.world = sim::load_sdf(loaded.scene, warnings, {.folders = sim::scene_folders(folders)});
   loaded.rules = simulated_player::read_rules(loaded.scene, folders);
+  simulated_player::Admission admission;
   for (std::string line; std::getline(std::cin, line);) {
     const json request = json::parse(line, nullptr, false);
     if (!request.is_object() || !request.contains("game") || !request["game"].is_string())
@@ -207,8 +210,12 @@ int main(int argc, char** argv) try {
       game.seed = request.value("seed", game.seed), game.limit_s = request.value("limit_s", game.limit_s);
       game.profile = request.value("profile", ""), game.player = request.value("player", "");
       game.population = request.value("population", game.population), game.practice = request.value("practice", game.practice);
-      if (!game.player.empty()) simulated_player::player_choice(game.player);
+      game.checks = request.value("checks", game.checks);
+      std::vector<int> failed;
+      if (!game.player.empty())
+        failed = admission.admit(simulated_player::player_choice(game.player), game.population, simulated_player::check_policy(game.checks));
       result = play_in_process(loaded, game);
+      if (!failed.empty()) result["failed_checks"] = failed;
     } catch (const json::exception& e) {
       throw std::runtime_error(
           "a game is {\"game\": NAME, \"seed\": N, \"limit_s\": S, \"profile\": XML}, which this line is not: " +

@@ -113,7 +113,7 @@ def checked(players, rule, report=lambda line: None):
     if left_out:
         report(f"{len(left_out)} of {len(players)} players fail a check and are not asked: " + "; ".join(f"{p.name}: {p.verdict()}" for p in left_out))
     if not found:
-        raise Refusal("no player passes the checks, so no game can be played; choose other numbers, or write count as the rule for failed checks")
+        raise Refusal("no player passes the checks, so no player is left; choose other numbers, or write count as the rule for failed checks")
     return found
 
 

@@ -17,7 +17,7 @@ DelayedKalman::DelayedKalman(HandModel model, const Vector& mean, const Matrix& 
   if (!(model_.dt_s > 0) || !(memory_s >= 0))
     throw std::invalid_argument("delayed_kalman: the step must be positive and the memory not negative");
   steps_ = static_cast<std::size_t>(std::ceil(memory_s / model_.dt_s)) + 1;
-  history_.push_back({mean, covariance, mean, covariance, 0, {}});
+  history_.push_back({mean, covariance, mean, covariance, 0, 0, {}});
 }
 
 void DelayedKalman::apply(Step& step) const {
@@ -35,7 +35,7 @@ void DelayedKalman::advance(const Step& from, Step& to) const {
   const double u = from.u;
   to.mean = model_.a * from.updated_mean + model_.b * u;
   to.covariance = model_.a * from.updated_covariance * model_.a.transpose() + model_.noise;
-  const double input = model_.control_share * model_.control_share * u * u + model_.control_sd * model_.control_sd;
+  const double input = model_.control_share * model_.control_share * u * u + model_.control_sd * model_.control_sd + from.input_sd * from.input_sd;
   to.covariance += input * model_.b * model_.b.transpose();
   to.covariance(0, 0) += model_.speed_noise_m2_s * std::abs(from.updated_mean[1]) * model_.dt_s;
 }
@@ -47,9 +47,10 @@ void DelayedKalman::refresh() {
   }
 }
 
-void DelayedKalman::predict(double u) {
+void DelayedKalman::predict(double u, double input_sd) {
   refresh();
   history_.back().u = u;
+  history_.back().input_sd = input_sd;
   Step next;
   advance(history_.back(), next);
   next.updated_mean = next.mean;

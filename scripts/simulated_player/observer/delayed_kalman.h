@@ -28,8 +28,8 @@ class DelayedKalman {
   // when a size does not fit, or a state count exceeds kMaxStates.
   DelayedKalman(HandModel model, const Vector& mean, const Matrix& covariance, double memory_s = 0.6);
 
-  // One step with this input.
-  void predict(double u);
+  // One step with this input, and a standard deviation of the input in this step beside those of the model.
+  void predict(double u, double input_sd = 0);
   // A scalar measurement y = h x + noise of this variance, which the player believes to be age_s old. Ignored when
   // y or the variance is not finite. Negative ages count as 0.
   void measure(double age_s, const Vector& h, double y, double variance);
@@ -51,6 +51,7 @@ class DelayedKalman {
     Vector updated_mean;
     Matrix updated_covariance;
     double u = 0;  // input to the next step
+    double input_sd = 0;
     std::vector<Measurement> measurements;
   };
   void apply(Step& step) const;

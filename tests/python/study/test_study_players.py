@@ -93,7 +93,7 @@ class Players(unittest.TestCase):
         self.assertIn("1 of 4 players fail a check and are not asked: observer:2: 2 3", self.said)
         counted = self.checked("count", {2: (2, 3)})
         self.assertEqual([p.verdict() for p in counted], ["none", "none", "2 3", "none"])
-        with self.assertRaisesRegex(Refusal, "no game can be played"):
+        with self.assertRaisesRegex(Refusal, "no player is left"):
             self.checked("leave_out", dict.fromkeys(range(4), (1,)))
 
     def test_the_typical_person_and_the_player_of_fixed_rules_have_no_checks_to_run(self):
@@ -135,6 +135,14 @@ class Players(unittest.TestCase):
                          "simulated (observer:1 of population 1, observer:2 of population 1; 1 of them fail a check)")
         self.assertEqual(found(study.players).observer(), "simulated (5 players, observer:0 of population 1 to observer:4 of population 1)")
         self.assertEqual(len(found(study.players).participants()), 5)
+
+    def test_falsifiers_are_in_the_file_before_the_games(self):
+        study = self.study('<player name="observer"/><falsifier name="sound" decided_by="tactus study information">A delay of sound must do nothing.</falsifier>')
+        self.assertEqual([(f.name, f.text, f.decided_by) for f in study.falsifiers], [("sound", "A delay of sound must do nothing.", "tactus study information")])
+        shipped = study_file.read("percept_limits")
+        self.assertEqual(len(shipped.falsifiers), 4)
+        self.assertEqual((len(shipped.players), shipped.checks, shipped.stimulus.common_starts), (128, "leave_out", True))
+        self.assertTrue({"", "percept", "force", "action"} <= {f.stage for c in shipped.conditions for f in c.factors})
 
     def test_a_live_session_has_one_player_of_the_first_population(self):
         with mock.patch.object(players, "failing", return_value=()):

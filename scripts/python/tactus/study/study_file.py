@@ -12,6 +12,7 @@ from tactus.paths import SCENES, SCRIPTS
 from tactus.psychophysics import functions, observers
 from tactus.refusal import Refusal
 from tactus.study import conditions, procedure_element, quantities, stages, texts
+from tactus.study.study_parts import Falsifier, Item, Observer, Stimulus
 
 SCHEMA = pathlib.Path(__file__).with_name("study.xsd")
 SHIPPED = SCRIPTS / "studies"
@@ -29,41 +30,6 @@ SOFTER = "Which of the two felt softer?"  # default question for two presses of 
 # press would therefore also soften the next press. A delay of the output ends immediately.
 SLOW_RECOVERY = ("network_delay", "jitter", "loss", "wire_loss", "reorder", "rate", "deadband")
 ENCODINGS = ("UTF-8", "US-ASCII", "ASCII")  # of the declaration of a file; ASCII is a part of UTF-8
-
-
-@dataclasses.dataclass(frozen=True)
-class Item:
-    """A question of a questionnaire, answered by one of choices, or by a number from lowest to highest in steps."""
-    id: str
-    text: str
-    choices: tuple
-    lowest: float
-    highest: float
-    step: float
-
-
-@dataclasses.dataclass(frozen=True)
-class Stimulus:
-    """by: apparatus or participant. The hand of the apparatus starts at `rest_m`, `above_m` over the surface, and taps or presses `depth_m` into the
-    surface; a press goes down and up `times` times, each in `period_s`. limit_s: time limit of a game. common_starts: whether game n has the same seed in all
-    conditions, so that conditions are compared with common random numbers."""
-    by: str = "apparatus"
-    rest_m: tuple = (0.0, 0.0, 0.04)
-    above_m: float = 0.032
-    depth_m: float = 0.012
-    period_s: float = 1.0
-    times: int = 2
-    limit_s: float = 30.0
-    common_starts: bool = False
-
-
-@dataclasses.dataclass(frozen=True)
-class Observer:
-    """A simulated participant in a condition. function: a psychometric function of the level, or one of observers.PERCEPTS, which judge the felt
-    stiffness. sources: {parameter: source of its value}."""
-    function: str
-    params: dict
-    sources: dict
 
 
 @dataclasses.dataclass(frozen=True)
@@ -97,6 +63,7 @@ class Study:
     observers: dict       # {condition id, or "": Observer}
     players: tuple        # of players.Player: the simulated players of a game
     checks: str           # players.CHECKS: the rule for players that fail a check
+    falsifiers: tuple     # of Falsifier
 
     def profile(self, condition, level):
         """XML of the degradation profile of a trial; level None: the base alone."""
@@ -212,7 +179,8 @@ class Reading:
             tolerance_ms=self.quantity(tolerance, "asynchrony", quantities.OPERATORS["delay"], 20.0),
             repeats=int(tolerance.get("repeats", "3")) if tolerance is not None else 3,
             margin={"time": self.quantity(margin, "time", quantities.SHARE, 10.0) / 100, "success": self.quantity(margin, "success", quantities.SHARE, 10.0) / 100},
-            observers=self.observers(found, kind), **self.players(task))
+            observers=self.observers(found, kind), **self.players(task),
+            falsifiers=tuple(Falsifier(e.get("name"), self.words(e), e.get("decided_by")) for e in root.findall("falsifier")))
 
     def players(self, task):
         elements = self.root.findall("player")

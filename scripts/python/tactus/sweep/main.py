@@ -117,6 +117,11 @@ def main(words):
             print(f"sweep: {adopted.adopt(folder, a.table)} games are reused from {a.table}", flush=True)
         left = folder.unfinished()
         print(f"sweep: {folder.study.name}, {len(folder.study.conditions)} conditions, {folder.games_each} games each with {players.described(folder.players)}, into {folder.path}", flush=True)
+        if not a.resume:
+            print(f"sweep: size of this run: {len(folder.players)} of the {len(folder.study.players)} players of the study, {len(folder.study.conditions)} conditions, "
+                  f"{folder.games_each} games each, {folder.done()[1]} games in all", flush=True)
+            for f in folder.study.falsifiers:
+                print(f"sweep: falsifier {f.name}: {f.text} Decided by {f.decided_by}, not by these games", flush=True)
         if left:
             signals.handle([signal.SIGTERM], stop)
             runner = Slurm(folder, left, a.partition, a.array_size) if a.slurm else Parallel(folder, left, a.jobs or len(os.sched_getaffinity(0)))

@@ -1,7 +1,9 @@
 // observer_players: prints simulated players of the population, and the checks that a player passes or fails.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "scripts/simulated_player/observer/checks/checks.h"
 #include "scripts/simulated_player/observer/population.h"
@@ -57,10 +59,34 @@ void print_admitted(int count, std::uint64_t seed) {
   std::fprintf(stderr, "%d of %d players pass all checks\n", admitted, count);
 }
 
+// One line for each player with the verdict of each check, and a line with the number of players that fail each.
+void print_table(int first, int count, std::uint64_t seed) {
+  std::printf("player");
+  for (int check = 1; check <= observer::kChecks; ++check) std::printf(",check %d", check);
+  std::printf(",admitted\n");
+  int admitted = 0;
+  std::vector<int> failures(observer::kChecks + 1, 0);
+  for (int i = first; i < first + count; ++i) {
+    const auto failing = observer::failing_checks(observer::player_of(static_cast<std::uint32_t>(i), seed), seed);
+    admitted += failing.empty();
+    std::printf("%d", i);
+    for (int check = 1; check <= observer::kChecks; ++check) {
+      const bool fails = std::find(failing.begin(), failing.end(), check) != failing.end();
+      failures[static_cast<std::size_t>(check)] += fails;
+      std::printf(",%s", fails ? "FAIL" : "pass");
+    }
+    std::printf(",%s\n", failing.empty() ? "yes" : "no");
+    std::fflush(stdout);
+  }
+  std::printf("failed");
+  for (int check = 1; check <= observer::kChecks; ++check) std::printf(",%d", failures[static_cast<std::size_t>(check)]);
+  std::printf(",%d of %d admitted\n", admitted, count);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
-  int count = 128, player = -1;
+  int count = 128, player = -1, first = 0;
   std::uint64_t seed = 1;
   tactus::sync::Arguments app("Simulated players that perceive and move as measured people do.");
   auto properties =
@@ -77,6 +103,10 @@ int main(int argc, char** argv) try {
       app.add_command("admit", "print which players of a population pass all checks; up to 20 s for a player");
   admit.add_option("--count", count, "number of players").range(1, 1'000'000).show_default();
   admit.add_option("--seed", seed, "seed of the population and of the experiments").show_default();
+  auto table = app.add_command("table", "print the verdict of each check for players of a population, as CSV; up to 20 s for a player");
+  table.add_option("--first", first, "number of the first player").range(0, 1'000'000).show_default();
+  table.add_option("--count", count, "number of players").range(1, 1'000'000).show_default();
+  table.add_option("--seed", seed, "seed of the population and of the experiments").show_default();
   if (const auto help = app.parse(argc, argv)) {
     std::fputs(help->c_str(), stdout);
     return 0;
@@ -88,6 +118,7 @@ int main(int argc, char** argv) try {
         player < 0 ? observer::PlayerParameters{} : observer::player_of(static_cast<std::uint32_t>(player), seed),
         seed);
   if (app.command() == "admit") print_admitted(count, seed);
+  if (app.command() == "table") print_table(first, count, seed);
   return 0;
 } catch (const std::exception& e) {
   std::fprintf(stderr, "observer_players: %s\n", e.what());
