@@ -42,54 +42,72 @@ Eigen::Vector3d force_of(const device_force_t& m, sync::HostTime arrival, sync::
   return {m.force_N.x, m.force_N.y, m.force_N.z};
 }
 
-}  // namespace
-
-int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
-  sync::Arguments app;
-  sync::NodeOptions options;
+struct PlayerOptions {
+  sync::NodeOptions node;
   std::string scene_file, device = "player", player = "stage_model", checks = "require";
-  Scatter scatter;
-  BodyDef body_def;
-  body_def.rest_m = {kRest_m[0], kRest_m[1], kRest_m[2]};
-  options.add_to(app, kSimulatedPlayer);
-  app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game").required().existing_file();
   std::vector<std::string> folders;
-  sim::add_scene_folder_option(app, folders);
-  app.add_option("--device", device, "name of the device that it controls: haptic_node --device external:NAME").show_default();
-  app.add_option("--degrade", options.degrade,
-                 "degradation profile (XML) of the observed modalities");
-  app.add_option("--frame-rate", body_def.frame_rate_Hz, "rate of the observed pictures, Hz").range(1.0, 1000.0).show_default();
-  app.add_option(
-         "--scatter-along", scatter.along_m,
-         "half range of each ball's random start position (from the seed), towards its hole or away, m").range(0.0, 0.2);
-  app.add_option("--scatter-aside", scatter.aside_m, "half range of each ball's random start position to the side, m").range(0.0, 0.2);
+  Scatter scatter;
+  BodyDef body;
+
+  // Reads the command line. Ends the process for --help and wrong options. Throws when the player is unknown or fails its checks.
+  void parse(int argc, char** argv);
+
+ private:
+  void add_player_to(sync::Arguments&);
+};
+
+void PlayerOptions::add_player_to(sync::Arguments& app) {
   app.add_option("--player", player,
                  "stage_model: fixed rules; observer: perceives and moves as a typical person; observer:N: person N of a population")
       .show_default();
-  app.add_option("--population", body_def.population_seed, "seed of the population of --player observer:N").show_default();
+  app.add_option("--population", body.population_seed, "seed of the population of --player observer:N").show_default();
   app.add_option("--checks", checks,
                  "for an observer:N that fails one of the twelve checks: require: it does not play; count: it plays, and the checks are named; "
                  "skip: they are not run")
       .show_default();
-  app.add_option("--practice", body_def.practice, "actions whose effects an observer perceived before the game; 0: it does not know the delays")
+  app.add_option("--practice", body.practice, "actions whose effects an observer perceived before the game; 0: it does not know the delays")
       .range(0, 100000)
       .show_default();
-  app.add_option("--reaction", body_def.stage_model.reaction_s, "of stage_model: reaction time to sight and hearing, s").range(0.0, 2.0).show_default();
-  sync::parse_or_exit(app, kSimulatedPlayer.name, argc, argv);
-  body_def.choice = player_choice(player);
-  if (const std::vector<int> failed = Admission().admit(body_def.choice, body_def.population_seed, check_policy(checks)); !failed.empty())
-    std::fprintf(stderr, "simulated_player: %s; its results are not those of a player that is like people\n",
-                 failed_sentence(body_def.choice, body_def.population_seed, failed).c_str());
-  const Rules rules = read_before ? *read_before : read_rules(scene_file, folders);
+  app.add_option("--reaction", body.stage_model.reaction_s, "of stage_model: reaction time to sight and hearing, s").range(0.0, 2.0).show_default();
+}
 
-  sync::Node node(kSimulatedPlayer, options);
+void PlayerOptions::parse(int argc, char** argv) {
+  sync::Arguments app;
+  body.rest_m = {kRest_m[0], kRest_m[1], kRest_m[2]};
+  node.add_to(app, kSimulatedPlayer);
+  app.add_option("SCENE", scene_file, "SDF file of the world, for the rules of its game").required().existing_file();
+  sim::add_scene_folder_option(app, folders);
+  app.add_option("--device", device, "name of the device that it controls: haptic_node --device external:NAME").show_default();
+  app.add_option("--degrade", node.degrade, "degradation profile (XML) of the observed modalities");
+  app.add_option("--frame-rate", body.frame_rate_Hz, "rate of the observed pictures, Hz").range(1.0, 1000.0).show_default();
+  app.add_option("--scatter-along", scatter.along_m,
+                 "half range of each ball's random start position (from the seed), towards its hole or away, m")
+      .range(0.0, 0.2);
+  app.add_option("--scatter-aside", scatter.aside_m, "half range of each ball's random start position to the side, m").range(0.0, 0.2);
+  add_player_to(app);
+  sync::parse_or_exit(app, kSimulatedPlayer.name, argc, argv);
+  body.choice = player_choice(player);
+  if (const std::vector<int> failed = Admission().admit(body.choice, body.population_seed, check_policy(checks)); !failed.empty())
+    std::fprintf(stderr, "simulated_player: %s; its results are not those of a player that is like people\n",
+                 failed_sentence(body.choice, body.population_seed, failed).c_str());
+}
+
+}  // namespace
+
+int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
+  PlayerOptions options;
+  options.parse(argc, argv);
+  const Scatter& scatter = options.scatter;
+  const Rules rules = read_before ? *read_before : read_rules(options.scene_file, options.folders);
+
+  sync::Node node(kSimulatedPlayer, options.node);
   sync::SceneReceiver scenes(node.bus());
   auto& forces = node.bus().queue<device_force_t>(channels::kDeviceForce, 64);
   auto& replies = node.bus().queue<sim_reply_t>(channels::kSimReply, 64);
   std::optional<Setup> setup;
-  const std::unique_ptr<PlayerBody> body = make_player_body(node, rules, body_def);
+  const std::unique_ptr<PlayerBody> body = make_player_body(node, rules, options.body);
   device_state_t state{};
-  state.device = device;
+  state.device = options.device;
   device_force_t force{};
   sync::HostTime force_arrival{};
   sync::HostTime last_tick{};
@@ -100,12 +118,12 @@ int tactus::simulated_player::run(int argc, char** argv, const Rules* read_befor
   while (node.running()) {
     const sync::HostTime now = node.wait();
     while (const auto m = forces.pop())
-      if (m->message.device == device && m->message.header.run_id == options.run_id)
+      if (m->message.device == options.device && m->message.header.run_id == options.node.run_id)
         force = m->message, force_arrival = m->arrival;
     if (scenes.poll(now)) {
       body->set_scene(*scenes.scene());
-      setup.emplace(node.bus(), *scenes.scene(), rules, places(rules, *scenes.scene(), scatter, options.seed),
-                    options.seed);
+      setup.emplace(node.bus(), *scenes.scene(), rules, places(rules, *scenes.scene(), scatter, options.node.seed),
+                    options.node.seed);
       node.set_state(node_health_t::RUNNING);
     }
     PlayerBody::Tick tick;
