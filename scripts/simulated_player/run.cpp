@@ -26,6 +26,7 @@
 
 using namespace tactus;
 
+namespace tactus::simulated_player {
 namespace {
 
 const sync::NodeDescriptor kSimulatedPlayer{.name = "participant",
@@ -93,6 +94,7 @@ void PlayerOptions::parse(int argc, char** argv) {
 }
 
 }  // namespace
+}  // namespace tactus::simulated_player
 
 int tactus::simulated_player::run(int argc, char** argv, const Rules* read_before) try {
   PlayerOptions options;
