@@ -54,6 +54,11 @@ const std::map<std::string, Names, std::less<>> kHarmless{
     {"visualize", {"false", "0"}},   {"light_on", {"true", "1"}},   {"laser_retro", {"0"}},
     {"lighting", {"true", "1"}},     {"double_sided", {"false", "0"}}};
 
+// Supported elements of which an element may have several, beside those of Tactus.
+const Names kSeveral{"world", "model", "link", "joint", "frame", "light", "collision", "visual", "physics"};
+
+bool may_repeat(std::string_view name) { return kSeveral.contains(name) || name.starts_with("tactus:"); }
+
 // Fixed step and rate of the simulation: one step per haptic tick.
 constexpr double kStep_s = 0.001, kRate_Hz = 1000;
 
@@ -77,6 +82,7 @@ void check_pace(const LoadContext& context, const sdf::Element& e) {
 }
 
 void walk(const LoadContext& context, const sdf::Element& element, const Names& supported) {
+  Names seen;
   for (const sdf::Element& child : element.children()) {
     if (&child == context.camera_sensor) continue;
     if (element.name == "world" && is_setting_element(child.name)) continue;  // handled by tactus_settings.h
@@ -84,6 +90,8 @@ void walk(const LoadContext& context, const sdf::Element& element, const Names& 
       if (!harmless(child)) context.warn(child, "is not supported and has no effect");
       continue;
     }
+    if (!may_repeat(child.name) && !seen.emplace(child.name).second)
+      context.warn(child, "is a second <" + std::string(child.name) + "> and has no effect");
     if (element.name == "physics") check_pace(context, child);
     if (const Names* next = children_of(element.name, child.name)) walk(context, child, *next);
   }

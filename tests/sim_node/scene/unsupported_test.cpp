@@ -50,3 +50,20 @@ TEST_CASE("Unsupported elements with their default values cause no warning") {
                  "<kinematic>0</kinematic></link></model>")
             .empty());
 }
+
+TEST_CASE("A second element of which only the first one counts causes one warning with its line") {
+  const auto w = warnings(R"(<gravity>0 0 -1</gravity>
+<gravity>0 0 nan</gravity>
+<model name="m"><pose>0 0 1 0 0 0</pose>
+<pose>0 0 2 0 0 0</pose>
+<link name="l"><collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>
+<collision name="d"><geometry><box><size>1 1 1</size></box></geometry></collision></link></model>)");
+  const auto second = [&](int line, const std::string& name) {
+    return std::ranges::count_if(w, [&](const std::string& sentence) {
+      return sentence.starts_with("scene.sdf:" + std::to_string(line) + ": ") && sentence.ends_with("is a second <" + name + "> and has no effect");
+    });
+  };
+  CHECK(second(4, "gravity") == 1);
+  CHECK(second(6, "pose") == 1);
+  CHECK(std::ranges::none_of(w, [](const std::string& sentence) { return sentence.find("collision") != std::string::npos; }));
+}
