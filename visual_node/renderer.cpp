@@ -140,7 +140,7 @@ void NodeRenderer::receive(sync::HostTime now) {
 void NodeRenderer::process_messages() {
   while (const auto m = world_.pop())
     composer_.push(m->message, m->arrival), overlays_.push(m->message), controls_.push(m->message);
-  while (const auto m = tools_.pop()) composer_.push(m->message, m->arrival), overlays_.push(m->message);
+  while (const auto m = tools_.pop()) composer_.push(m->message, m->arrival);
   walls_.receive();
 }
 
@@ -189,7 +189,7 @@ void NodeRenderer::draw(sync::HostTime now, const std::optional<LockedFrame>& lo
   output_ = endpoint.output();
   overlays_.tint(composer_, scene_ ? scene_->bodies.size() : 0);
   const sync::HostTime newest_arrival = world_.newest_arrival();
-  frame_ = locked ? composer_.frame(now, *locked, newest_arrival)
+  frame_ = locked ? composer_.frame(now, *locked, newest_arrival, endpoint.profile_delay())
                   : composer_.frame(now, slot_, endpoint.delay(), newest_arrival, endpoint.profile_delay());
   render_output_.draw_scene(frame_.list, output_);
   const sync::HostTime drawn = host().clock();

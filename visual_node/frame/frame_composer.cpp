@@ -5,6 +5,7 @@
 #include <tactus/contact_event_t.hpp>
 #include <tactus/presentation_t.hpp>
 #include <tactus/scene_t.hpp>
+#include <utility>
 
 #include "lcmtypes/pointing.h"
 #include "lcmtypes/vectors.h"
@@ -61,32 +62,34 @@ Frame FrameComposer::frame(sync::HostTime now, std::int64_t number, sync::Nanose
   head_.extend_history(view_delay);
   Frame frame;
   frame.number = number;
-  draw(frame, now, delay, map ? std::optional(map->to_sim(t - delay)) : std::nullopt, head_.at(t - view_delay),
+  draw(frame, now, {delay, view_delay}, map ? std::optional(map->to_sim(t - delay)) : std::nullopt, head_.at(t - view_delay),
        newest_arrival);
   return frame;
 }
 
-Frame FrameComposer::frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival) {
+Frame FrameComposer::frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival,
+                           sync::Nanoseconds view_delay) {
   due_ = locked.due_host_time;
   Frame frame;
   frame.number = locked.number;
-  draw(frame, now, locked.delay, locked.sim_time, locked.head, newest_arrival);
+  draw(frame, now, {locked.delay, view_delay}, locked.sim_time, locked.head, newest_arrival);
   for (PoseSample& sample : frame.samples)
     if (sample.tool == head_tool_ && locked.head_ns >= 0) sample.seq = locked.head_seq;
   return frame;
 }
 
-void FrameComposer::draw(Frame& frame, sync::HostTime now, sync::Nanoseconds delay,
+void FrameComposer::draw(Frame& frame, sync::HostTime now, const Delays& delays,
                          std::optional<sync::SimTime> instant, const sync::Sample<sync::BodyPose>& head,
                          sync::HostTime newest_arrival) {
   tick_ = now;
-  frame.samples = newest_samples(now);
-  bodies_.extend_history(delay);
+  bodies_.extend_history(delays.delay);
+  for (auto& [tool, drawn] : tools_) drawn.reports.extend_history(delays.view_delay);
   frame.instant = instant;
   if (instant) frame.status = bodies_.status(*instant);
   assess_state(frame, now, newest_arrival);
+  const sync::HostTime shown = due_.value_or(now + render_time_.expected()) - delays.view_delay;
+  add_tools(frame, std::min(shown, now), now);
   if (view_) {
-    frame.tools = tool_poses(instant, now);
     frame.list = view_->draw(body_poses(instant), frame.tools, view_of_head(head, frame));
     frame.list.lighting.exposure = static_cast<float>(settings_.exposure);
   } else {
@@ -167,34 +170,35 @@ std::vector<Eigen::Isometry3d> FrameComposer::body_poses(std::optional<sync::Sim
   return poses;
 }
 
-std::vector<PoseSample> FrameComposer::newest_samples(sync::HostTime now) const {
-  std::vector<PoseSample> samples;
-  for (const auto& [tool, newest] : tools_)
-    if (now - newest.arrival <= kToolStaleAfter) samples.push_back({tool, newest.state.header.seq});
-  return samples;
+ToolPose FrameComposer::tool_pose(const tool_state_t& m, std::optional<sync::SimTime> t) {
+  sync::Nanoseconds ahead{0};
+  if (t && m.header.sim_time_ns >= 0)
+    ahead = std::clamp(*t - sync::sim_time(m.header.sim_time_ns), sync::Nanoseconds(0), kMaxToolExtrapolation);
+  ToolPose pose{true, to_eigen(m.device), to_eigen(m.proxy)};
+  pose.device.translation() += to_eigen(m.device_velocity_m_s) * sync::to_seconds(ahead);
+  pose.proxy.translation() += to_eigen(m.proxy_velocity_m_s) * sync::to_seconds(ahead);
+  return pose;
 }
 
-std::vector<ToolPose> FrameComposer::tool_poses(std::optional<sync::SimTime> t, sync::HostTime now) {
-  std::vector<ToolPose> poses(scene_->tools.size());
+void FrameComposer::add_tools(Frame& frame, sync::HostTime presented, sync::HostTime now) {
+  if (scene_) frame.tools.resize(scene_->tools.size());
+  frame.tool_forces_N.assign(frame.tools.size(), Eigen::Vector3d::Zero());
   const double dt_s = sync::to_seconds(now - std::exchange(tools_drawn_, now));
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto it = tools_.find(static_cast<int>(i));
-    if (it == tools_.end()) continue;
-    if (now - it->second.arrival > kToolStaleAfter) {
-      it->second.display.reset();
+  for (auto& [tool, drawn] : tools_) {
+    const ToolHistory::Report* report = presented < now ? drawn.reports.arrived_by(presented) : drawn.reports.newest();
+    if (!report || presented - report->arrival > kToolStaleAfter) {
+      drawn.display.reset();
       continue;
     }
-    const tool_state_t& m = it->second.state;
-    sync::Nanoseconds ahead{0};
-    if (t && m.header.sim_time_ns >= 0)
-      ahead = std::clamp(*t - sync::sim_time(m.header.sim_time_ns), sync::Nanoseconds(0), kMaxToolExtrapolation);
-    poses[i] = {true, to_eigen(m.device), to_eigen(m.proxy)};
-    poses[i].device.translation() += to_eigen(m.device_velocity_m_s) * sync::to_seconds(ahead);
-    poses[i].proxy.translation() += to_eigen(m.proxy_velocity_m_s) * sync::to_seconds(ahead);
-    const Eigen::Vector3d beside = it->second.display.step(poses[i].proxy.translation(), settings_.display_gain, dt_s);
-    for (Eigen::Isometry3d* pose : {&poses[i].device, &poses[i].proxy}) pose->translation() += beside;
+    const tool_state_t& m = report->state;
+    frame.samples.push_back({tool, m.header.seq});
+    if (tool < 0 || static_cast<std::size_t>(tool) >= frame.tools.size()) continue;
+    ToolPose& pose = frame.tools[static_cast<std::size_t>(tool)];
+    pose = tool_pose(m, frame.instant);
+    const Eigen::Vector3d beside = drawn.display.step(pose.proxy.translation(), settings_.display_gain, dt_s);
+    for (Eigen::Isometry3d* place : {&pose.device, &pose.proxy}) place->translation() += beside;
+    frame.tool_forces_N[static_cast<std::size_t>(tool)] = to_eigen(m.force_N);
   }
-  return poses;
 }
 
 // Returns nothing when the scene's own view applies. A lost head keeps its last pose. The note of the frame reports

@@ -24,6 +24,7 @@
 #include "visual_node/frame/motion_marker.h"
 #include "visual_node/frame/render_time.h"
 #include "visual_node/frame/sample_status_counts.h"
+#include "visual_node/frame/tool_history.h"
 #include "visual_node/scene_view/flashes.h"
 #include "visual_node/scene_view/scene_view.h"
 
@@ -36,6 +37,7 @@ struct Frame {
   std::string note;
   std::int64_t number = 0;
   std::vector<PoseSample> samples;  // newest TOOL_STATE of each tool in the frame
+  std::vector<Eigen::Vector3d> tool_forces_N;  // on the hand of each tool, as drawn; of a tool without report: 0
   std::optional<sync::SimTime> instant;  // shown instant of the world
   std::vector<ToolPose> tools;           // as drawn
 };
@@ -59,8 +61,7 @@ class FrameComposer {
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
   void push(const tool_state_t& m, sync::HostTime arrival) {
-    ToolArrival& tool = tools_[m.tool];
-    tool.state = m, tool.arrival = arrival;
+    tools_[m.tool].reports.push(m, arrival);
     if (m.tool == head_tool_) head_.push(m, arrival);
   }
   // Loads a new scene and returns its view, which supplies the geometries to the renderer. Bodies and events are
@@ -84,13 +85,14 @@ class FrameComposer {
 
   // Draws the list of the frame that begins now, with this number. delay: age of the shown world at presentation.
   // newest_arrival: of any message before degradation, so that a gap made by a profile is not taken for a loss.
-  // view_delay: the part of `delay` that a profile adds. The eye is where it is when the frame is presented; a
-  // playout policy does not delay it.
+  // view_delay: the part of `delay` that a profile adds. Eye and tools are where they are when the frame is presented: a
+  // profile delays them with the world, a playout policy does not.
   Frame frame(sync::HostTime now, std::int64_t number, sync::Nanoseconds delay = sync::Nanoseconds(0),
               sync::HostTime newest_arrival = sync::HostTime{},
               sync::Nanoseconds view_delay = sync::Nanoseconds(0));
   // Draws the frame that all walls of the room agree on, with its own number, instant and head.
-  Frame frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival);
+  Frame frame(sync::HostTime now, const LockedFrame& locked, sync::HostTime newest_arrival,
+              sync::Nanoseconds view_delay = sync::Nanoseconds(0));
   // Call when the surfaces of that frame are drawn: adds everything above them, with the events that arrived
   // until now. held: how long a profile holds each picture; the picture shows the events up to its instant. 0:
   // one picture a tick.
@@ -104,25 +106,29 @@ class FrameComposer {
   const SampleStatusCounts& poses() const { return poses_; }
 
  private:
-  struct ToolArrival {
-    tool_state_t state;
-    sync::HostTime arrival;
+  struct DrawnTool {
+    ToolHistory reports;
     DisplayGain display = {};
   };
-  void draw(Frame& frame, sync::HostTime now, sync::Nanoseconds delay, std::optional<sync::SimTime> instant,
+  // delay, view_delay: as of frame().
+  struct Delays {
+    sync::Nanoseconds delay, view_delay;
+  };
+  void draw(Frame& frame, sync::HostTime now, const Delays& delays, std::optional<sync::SimTime> instant,
             const sync::Sample<sync::BodyPose>& head, sync::HostTime newest_arrival);
   void add_due_flashes(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held);
   sync::HostTime next_presentation(sync::HostTime t) const;
   void assess_state(Frame& frame, sync::HostTime now, sync::HostTime newest_arrival);
   std::vector<Eigen::Isometry3d> body_poses(std::optional<sync::SimTime> t);
-  std::vector<PoseSample> newest_samples(sync::HostTime now) const;
-  std::vector<ToolPose> tool_poses(std::optional<sync::SimTime> t, sync::HostTime now);
+  // presented: the host time whose tools are shown, at most now.
+  void add_tools(Frame& frame, sync::HostTime presented, sync::HostTime now);
+  static ToolPose tool_pose(const tool_state_t& state, std::optional<sync::SimTime> t);
   std::optional<Eigen::Isometry3d> view_of_head(const sync::Sample<sync::BodyPose>& head, Frame& frame) const;
 
   Settings settings_;
   sync::ContactStream contacts_;
   sync::BodyHistory bodies_;
-  std::map<int, ToolArrival> tools_;
+  std::map<int, DrawnTool> tools_;
   sync::HostTime tools_drawn_{};
   sync::PoseHistory head_;
   int head_tool_ = -1;  // index of the tool that the view follows; -1: none

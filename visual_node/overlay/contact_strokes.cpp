@@ -51,10 +51,10 @@ void append_contact_forces(std::vector<Stroke>& out, std::span<const contact_t> 
   }
 }
 
-void append_hand_force(std::vector<Stroke>& out, const ToolPose& pose, const tool_state_t& state,
+void append_hand_force(std::vector<Stroke>& out, const ToolPose& pose, const Eigen::Vector3d& force_N,
                        float scale_m_N, const Eigen::Vector3d& origin_m) {
   if (!pose.known) return;
-  append_arrow(out, pose_about(pose.proxy, origin_m).translation().cast<float>(), to_eigen(state.force_N).cast<float>() * scale_m_N,
+  append_arrow(out, pose_about(pose.proxy, origin_m).translation().cast<float>(), force_N.cast<float>() * scale_m_N,
                kHandForce);
 }
 

@@ -3,7 +3,6 @@
 
 #include <span>
 #include <tactus/contact_t.hpp>
-#include <tactus/tool_state_t.hpp>
 #include <vector>
 
 #include "visual_node/overlay/strokes.h"
@@ -24,7 +23,7 @@ void append_contacts(std::vector<Stroke>& out, std::span<const contact_t> contac
 void append_contact_forces(std::vector<Stroke>& out, std::span<const contact_t> contacts, float scale_m_N,
                            const Eigen::Vector3d& origin_m = Eigen::Vector3d::Zero());
 // The force on a hand, at its proxy.
-void append_hand_force(std::vector<Stroke>& out, const ToolPose& pose, const tool_state_t& state, float scale_m_N,
+void append_hand_force(std::vector<Stroke>& out, const ToolPose& pose, const Eigen::Vector3d& force_N, float scale_m_N,
                        const Eigen::Vector3d& origin_m = Eigen::Vector3d::Zero());
 // Axes of the proxy, fainter axes of the device, and the spring between them when they are apart.
 void append_tool(std::vector<Stroke>& out, const ToolPose& pose, const Eigen::Vector3d& origin_m = Eigen::Vector3d::Zero());

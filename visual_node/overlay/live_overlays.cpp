@@ -41,7 +41,6 @@ std::vector<std::string> LiveOverlays::configure(const Settings& settings) {
   plots_ = Plots(parse_plots(settings.plots, warnings), sync::from_seconds(settings.plot_span_s));
   if (!plots_.empty()) on_.set(Overlay::kPlots);
   body_groups_.reset();
-  tools_.clear();
   subscribe();
   return warnings;
 }
@@ -60,7 +59,6 @@ void LiveOverlays::subscribe() {
     queue->set_enabled(std::find(wanted.begin(), wanted.end(), channel) != wanted.end());
   for (const std::string& channel : wanted)
     if (!queues_.contains(channel)) queues_[channel] = &bus_.raw(channel.c_str(), kQueueLength);
-  if (!on_.on(Overlay::kForces)) tools_.clear();
   if (!on_.on(Overlay::kGroups)) body_groups_.reset();
 }
 
@@ -112,9 +110,8 @@ void LiveOverlays::append(Frame& frame, PanelData data, sync::HostTime now, int 
   if (on_.on(Overlay::kForces)) append_contact_forces(strokes, touching.value, force_scale_m_N_, origin_m);
   for (std::size_t i = 0; i < std::min<std::size_t>(frame.tools.size(), kMaxTools); ++i) {
     if (on_.on(Overlay::kTools)) append_tool(strokes, frame.tools[i], origin_m);
-    const auto state = tools_.find(static_cast<int>(i));
-    if (on_.on(Overlay::kForces) && state != tools_.end())
-      append_hand_force(strokes, frame.tools[i], state->second, force_scale_m_N_, origin_m);
+    if (on_.on(Overlay::kForces) && i < frame.tool_forces_N.size())
+      append_hand_force(strokes, frame.tools[i], frame.tool_forces_N[i], force_scale_m_N_, origin_m);
   }
   data.contacts = touching.value.size();
   data.physics = physics_;

@@ -4,7 +4,6 @@
 
 #include <map>
 #include <string>
-#include <tactus/tool_state_t.hpp>
 #include <tactus/world_state_t.hpp>
 #include <vector>
 
@@ -30,12 +29,9 @@ class LiveOverlays {
   void toggle(Overlay o);
   const OverlaySet& on() const { return on_; }
 
-  // Messages that the node receives anyway.
+  // A message that the node receives anyway.
   void push(const world_state_t& m) {
     if (on_.on(Overlay::kGroups)) body_groups_.push(m);
-  }
-  void push(const tool_state_t& m) {
-    if (on_.on(Overlay::kForces)) tools_[m.tool] = m;
   }
 
   // Call before a frame is composed: sets the colours of its bodies.
@@ -65,7 +61,6 @@ class LiveOverlays {
   BodyGroups body_groups_;
   bool tinted_ = false;
   TickTimes physics_;
-  std::map<int, tool_state_t> tools_;
 };
 
 }  // namespace tactus::visual

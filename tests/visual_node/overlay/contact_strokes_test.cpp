@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <tactus/contact_point_t.hpp>
 #include <tactus/contact_t.hpp>
-#include <tactus/tool_state_t.hpp>
 
 using namespace tactus;
 using namespace tactus::visual;
@@ -46,14 +45,13 @@ TEST_CASE("A force arrow has a length of force times scale and starts at the mid
   CHECK(strokes[0].from.head<3>().isApprox(Eigen::Vector3f(1, 0, 0.2f)));
   CHECK((strokes[0].to - strokes[0].from).head<3>().norm() == Approx(0.06));
   strokes.clear();
-  tool_state_t state{};
-  state.force_N.y = -2;
+  const Eigen::Vector3d force_N(0, -2, 0);
   ToolPose pose;
-  append_hand_force(strokes, pose, state, 0.02f);
+  append_hand_force(strokes, pose, force_N, 0.02f);
   CHECK(strokes.empty());  // its place is unknown
   pose.known = true;
   pose.proxy.translation() = Eigen::Vector3d(1, 2, 3);
-  append_hand_force(strokes, pose, state, 0.02f);
+  append_hand_force(strokes, pose, force_N, 0.02f);
   REQUIRE(!strokes.empty());
   CHECK(strokes[0].to.head<3>().isApprox(Eigen::Vector3f(1, 1.96f, 3)));
 }

@@ -7,7 +7,6 @@
 #include <tactus/light_def_t.hpp>
 #include <tactus/scene_t.hpp>
 #include <tactus/shape_def_t.hpp>
-#include <tactus/tool_state_t.hpp>
 #include <utility>
 
 #include "lcmtypes/bump.h"
@@ -102,12 +101,10 @@ TEST_CASE("Flashes, contacts, forces and the mouse 300 km from the origin are wh
     ToolPose tool;
     tool.known = true;
     tool.proxy.translation() = shift + Vector3d(0.1, 0.2, 0.3), tool.device.translation() = shift + Vector3d(0.1, 0.2, 0.29);
-    tool_state_t state{};
-    state.force_N.x = 2;
     std::vector<Stroke> out;
     append_contacts(out, std::vector{c}, shift);
     append_contact_forces(out, std::vector{c}, 0.02f, shift);
-    append_hand_force(out, tool, state, 0.02f, shift);
+    append_hand_force(out, tool, {2, 0, 0}, 0.02f, shift);
     append_tool(out, tool, shift);
     return out;
   };
