@@ -76,8 +76,8 @@ class PresentationMatcher {
   static constexpr std::size_t kMaxNeeds = 4096;
   // Limit of nodes, of modalities, and of simulations of other runs.
   static constexpr std::size_t kMaxModalities = 64;
-  // Those of twelve modalities. Each keeps a histogram of 256 kB.
-  static constexpr std::size_t kMaxPairs = 66;
+  // Each keeps a histogram, usually of a few kB.
+  static constexpr std::size_t kMaxPairs = 256;
 
   // All times are converted to this clock. Health and reports of another run are ignored. Run 0: the run and
   // clock of the first health message.

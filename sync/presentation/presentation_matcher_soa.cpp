@@ -20,34 +20,42 @@ std::int64_t SoaHistogram::bin_of(Nanoseconds soa) {
 
 void SoaHistogram::add(Nanoseconds soa, Nanoseconds uncertainty) {
   const std::int64_t bin = bin_of(soa);
-  ++bins_[static_cast<std::size_t>(bin)];
-  first_ = std::min(first_, bin), last_ = std::max(last_, bin);
+  ++blocks_[bin / kBlock][static_cast<std::size_t>(bin % kBlock)];
+  last_ = std::max(last_, bin);
   ++count_;
   uncertainty_ = std::max(uncertainty_, uncertainty);
+}
+
+template <class Use>
+void SoaHistogram::each_bin(Use use) const {
+  for (const auto& [number, counts] : blocks_)
+    for (std::int64_t i = 0; i < kBlock; ++i)
+      if (const std::int32_t n = counts[static_cast<std::size_t>(i)]; n > 0 && use(number * kBlock + i, n)) return;
 }
 
 Nanoseconds SoaHistogram::quantile(double q) const {
   if (count_ == 0) return Nanoseconds(0);
   const double target = q * static_cast<double>(count_);
-  double below = 0;
-  std::int64_t bin = first_;
-  for (; bin < last_; ++bin) {
-    const double here = bins_[static_cast<std::size_t>(bin)];
-    if (here > 0 && below + here >= target) break;
+  double below = 0, here = 1;
+  std::int64_t found = last_;
+  each_bin([&](std::int64_t bin, std::int32_t n) {
+    found = bin, here = n;
+    if (bin == last_ || below + here >= target) return true;
     below += here;
-  }
-  const double here = std::max(1, bins_[static_cast<std::size_t>(bin)]);
+    return false;
+  });
   const double within = std::clamp((target - below) / here, 0.0, 1.0);
-  const auto width = static_cast<double>((begin_of(bin + 1) - begin_of(bin)).count());
-  return begin_of(bin) + Nanoseconds(std::llround(within * width));
+  const auto width = static_cast<double>((begin_of(found + 1) - begin_of(found)).count());
+  return begin_of(found) + Nanoseconds(std::llround(within * width));
 }
 
 std::int64_t SoaHistogram::beyond(Nanoseconds before, Nanoseconds after) const {
   std::int64_t count = 0;
-  for (std::int64_t bin = first_; bin <= last_; ++bin) {
+  each_bin([&](std::int64_t bin, std::int32_t n) {
     const Nanoseconds middle = (begin_of(bin) + begin_of(bin + 1)) / 2;
-    if (middle < -before || middle > after) count += bins_[static_cast<std::size_t>(bin)];
-  }
+    if (middle < -before || middle > after) count += n;
+    return false;
+  });
   return count;
 }
 

@@ -1,8 +1,9 @@
-// A histogram of the onset asynchronies of one pair of modalities: bounded memory, quantiles accurate to half a bin.
+// A histogram of the onset asynchronies of one pair of modalities: memory of the bins in use, quantiles accurate to half a bin.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <vector>
+#include <map>
 
 #include "sync/time/time.h"
 
@@ -29,11 +30,15 @@ class SoaHistogram {
  private:
   // Wide bins, narrow bins, wide bins.
   static constexpr std::int64_t kWide = (kWideRange - kRange) / kWideBin, kNarrow = 2 * kRange / kBin;
-  static constexpr std::int64_t kBins = 2 * kWide + kNarrow;
   static Nanoseconds begin_of(std::int64_t bin);
   static std::int64_t bin_of(Nanoseconds soa);
-  std::vector<std::int32_t> bins_ = std::vector<std::int32_t>(kBins, 0);
-  std::int64_t first_ = kBins - 1, last_ = 0;  // range of bins in use: few of all, so that ten queries a second stay cheap
+  // Calls use(bin, count) for each bin that counts, in order, until it returns true.
+  template <class Use>
+  void each_bin(Use use) const;
+  // The bins of a block have memory once one of them counts: a pair uses few of all.
+  static constexpr std::int64_t kBlock = 64;
+  std::map<std::int64_t, std::array<std::int32_t, kBlock>> blocks_;
+  std::int64_t last_ = 0;  // the last bin that counts
   std::int64_t count_ = 0;
   Nanoseconds uncertainty_{0};
 };
