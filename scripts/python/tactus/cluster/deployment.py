@@ -17,7 +17,7 @@ PROGRAMS = ("sim_node", "haptic_node", "audio_node", "visual_node", "thermal_nod
 FOLDERS = {"share/scenes": SCENES, "share/rooms": ROOMS, "share/relays": sites.SHIPPED}
 LEFT_OUT = {".py", ".md"}
 # Files that `tactus doctor` imports besides its own package.
-DOCTOR = ("__init__.py", "option_parser.py", "paths.py", "refusal.py", "signals.py", "environment.py", "terminal.py", "commands/__init__.py", "commands/dispatch.py", "commands/common_options.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/sound_server.py", "launch/network.py")
+DOCTOR = ("__init__.py", "option_parser.py", "own_files.py", "paths.py", "refusal.py", "signals.py", "environment.py", "terminal.py", "commands/__init__.py", "commands/dispatch.py", "commands/common_options.py", "commands/table.py", "launch/__init__.py", "launch/equipment.py", "launch/sound_server.py", "launch/network.py")
 LARGEST_SCENE_BYTES = 500_000_000
 
 
