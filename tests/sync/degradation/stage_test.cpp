@@ -1,6 +1,7 @@
 // Tests of the stages of touch: their names in a profile, and the signal of a stage.
 #include "sync/degradation/stage_signal.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
