@@ -24,6 +24,21 @@ Viewer belief_viewer() {
   return viewer;
 }
 
+// A picture of a ball and the hand, shown until the next one.
+void show(ObserverSenses& senses, double now, double interval_s, const Vector3d& ball, const Vector3d& hand) {
+  Picture picture;
+  picture.shown_s = now, picture.interval_s = interval_s;
+  picture.balls.emplace_back(Picture::Ball{ball, 400});
+  picture.hand_m = hand;
+  senses.show(picture, ball);
+}
+
+// The hand rests without a force.
+void rest(ObserverSenses& senses, double now, const Vector3d& hand) {
+  senses.press(now, Vector3d::Zero());
+  senses.place_hand(now, hand);
+}
+
 // Errors of the beliefs of a typical person who looks at a resting hand beside a ball, root mean square over 2 s, m.
 struct BeliefErrors {
   double between_m = 0, ball_m = 0;  // across the sight: ball minus hand, and the ball
@@ -39,15 +54,8 @@ BeliefErrors looked_at(std::uint64_t seed, double ball_speed_m_s = 0) {
   for (int step = 0; step < 300; ++step) {
     const double now = step * kSampleStep_s;
     ball.y() += kSampleStep_s * ball_speed_m_s;
-    if (step % 2 == 0) {
-      Picture picture;
-      picture.shown_s = now, picture.interval_s = 2 * kSampleStep_s;
-      picture.balls.emplace_back(Picture::Ball{ball, 400});
-      picture.hand_m = hand;
-      senses.show(picture, ball);
-    }
-    senses.press(now, Vector3d::Zero());
-    senses.place_hand(now, hand);
+    if (step % 2 == 0) show(senses, now, 2 * kSampleStep_s, ball, hand);
+    rest(senses, now, hand);
     beliefs.perceive(now, senses, 0, false);
     beliefs.predict(now, Vector3d::Zero(), 0);
     if (step < 100) continue;
@@ -82,13 +90,8 @@ TEST_CASE("An error of the felt place of the hand does not move a seen ball") {
     ObserverBeliefs beliefs(off, belief_rules(), belief_viewer(), [](std::size_t, const Vector3d&) { return 400.0; }, hand, seed);
     for (int step = 0; step < 200; ++step) {
       const double now = step * kSampleStep_s;
-      Picture picture;
-      picture.shown_s = now, picture.interval_s = kSampleStep_s;
-      picture.balls.emplace_back(Picture::Ball{ball, 400});
-      picture.hand_m = hand;
-      senses.show(picture, ball);
-      senses.press(now, Vector3d::Zero());
-      senses.place_hand(now, hand);
+      show(senses, now, kSampleStep_s, ball, hand);
+      rest(senses, now, hand);
       beliefs.perceive(now, senses, 0, false);
       beliefs.predict(now, Vector3d::Zero(), 0);
     }
