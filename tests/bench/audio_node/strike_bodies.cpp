@@ -25,7 +25,9 @@ using nlohmann::json;
 
 namespace {
 
-constexpr sync::Nanoseconds kAhead{60'000'000};  // the stream has settled by then
+// A long period leaves a loaded machine time to compute it; the block size does not change the sound.
+constexpr int kPeriodFrames = 4096;
+constexpr sync::Nanoseconds kAhead{600'000'000};  // several periods: the stream has settled by then
 
 vec3_t vec3(const json& of) { return {of.at(0), of.at(1), of.at(2)}; }
 vec3f_t vec3f(const json& of) { return {of.at(0), of.at(1), of.at(2)}; }
@@ -77,7 +79,7 @@ void strike(const json& of, const std::string& folder) {
   settings.max_modes = of.value("max_modes", static_cast<int>(settings.max_modes));
   audio::StreamOptions options;
   options.device = "virtual", options.folder = folder;
-  options.rate_Hz = static_cast<int>(settings.sample_rate_Hz), options.period_frames = static_cast<int>(settings.period_frames);
+  options.rate_Hz = static_cast<int>(settings.sample_rate_Hz), options.period_frames = kPeriodFrames;
   const audio::Impacts impacts(scene_of(of), {}, settings, settings.sample_rate_Hz, 1);
   audio::CallbackQueues queues;
   auto renderer = std::make_unique<audio::Renderer>(queues, audio::RendererDef{});

@@ -116,20 +116,32 @@ await test("Tab reaches every control of the page, and each has a name and a vis
     await it.receive(hello(true));
     await it.receive(frame());
     await settle();
-    const wanted = await it.page.$$eval("button, select, input, summary, [tabindex='0']", (all) => all.filter((e) => e.checkVisibility()).length);
-    const seen = new Set();
-    for (let i = 0; i < wanted + 5; ++i) {
-      await it.page.keyboard.press("Tab");
-      const at = await it.page.evaluate(() => {
-        const e = document.activeElement;
-        if (e === document.body) return "";
-        e.dataset.seen ??= String(document.querySelectorAll("[data-seen]").length);
-        return getComputedStyle(e).outlineStyle === "none" ? `no outline: ${e.outerHTML.slice(0, 80)}` : e.dataset.seen;
+    // A disabled control is out of the order of Tab until its slider is above 0.
+    const reaches_all = async (disabled) => {
+      const [enabled, off] = await it.page.$$eval("button, select, input, summary, [tabindex='0']", (all) => {
+        for (const e of all) delete e.dataset.seen;
+        const visible = all.filter((e) => e.checkVisibility());
+        return [visible.filter((e) => !e.disabled).length, visible.filter((e) => e.disabled).map((e) => e.id)];
       });
-      assert.ok(!at.startsWith("no outline"), at);
-      if (at) seen.add(at);
-    }
-    assert.equal(seen.size, wanted, "the controls that Tab reaches");
+      assert.deepEqual(off, disabled, "the disabled controls");
+      const seen = new Set();
+      for (let i = 0; i < enabled + 5; ++i) {
+        await it.page.keyboard.press("Tab");
+        const at = await it.page.evaluate(() => {
+          const e = document.activeElement;
+          if (e === document.body) return "";
+          e.dataset.seen ??= String(document.querySelectorAll("[data-seen]").length);
+          return getComputedStyle(e).outlineStyle === "none" ? `no outline: ${e.outerHTML.slice(0, 80)}` : e.dataset.seen;
+        });
+        assert.ok(!at.startsWith("no outline"), at);
+        if (at) seen.add(at);
+      }
+      assert.equal(seen.size, enabled, "the controls that Tab reaches");
+    };
+    await reaches_all(["haptic:force-predict"]);
+    await it.page.focus("[id='haptic:force-deadband']");
+    await it.page.keyboard.press("ArrowRight");
+    await reaches_all([]);
   } finally { await it.close(); }
 });
 
