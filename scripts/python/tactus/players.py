@@ -48,10 +48,15 @@ class Player:
         return "" if self.failed is None else " ".join(map(str, self.failed)) or "none"
 
 
+def is_number(text):
+    """True for the number of a player. A text of thousands of digits is none: int() refuses it."""
+    return text.isascii() and text.isdigit() and len(text) <= len(str(LARGEST_NUMBER)) and int(text) <= LARGEST_NUMBER
+
+
 def is_player(word):
     """True for stage_model, observer and observer:NUMBER (scripts/simulated_player/player_choice.h)."""
     name, colon, number = word.partition(":")
-    return word in NAMES or name == "observer" and bool(colon) and number.isascii() and number.isdigit() and int(number) <= LARGEST_NUMBER
+    return word in NAMES or name == "observer" and bool(colon) and is_number(number)
 
 
 def numbers_of(text):
@@ -59,7 +64,7 @@ def numbers_of(text):
     found = []
     for part in text.split():
         first, dash, last = part.partition("-")
-        if not all(n.isascii() and n.isdigit() and int(n) <= LARGEST_NUMBER for n in ((first, last) if dash else (first,))):
+        if not all(map(is_number, (first, last) if dash else (first,))):
             raise ValueError(f"{part} is no number of a player; write numbers and ranges, for example 0-7 12")
         many = range(int(first), int(last if dash else first) + 1)
         if not many or len(many) > MOST:

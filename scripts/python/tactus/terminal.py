@@ -25,6 +25,11 @@ def readable(text):
     return one_line(text).encode("utf-8", "backslashreplace").decode("utf-8")
 
 
+def show(text=""):
+    """Prints a line of a result. It may hold texts of others: names in tables, logs and profiles. Raises OSError when it cannot be written."""
+    print(printable(text))
+
+
 def report(text, stream=None):
     """Prints complete lines and flushes."""
     stream = stream or sys.stdout

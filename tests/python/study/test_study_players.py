@@ -1,4 +1,6 @@
 """The simulated players of a study: their names, their checks, and their place in every table and report."""
+import contextlib
+import io
 import pathlib
 import sys
 import tempfile
@@ -81,6 +83,14 @@ class Players(unittest.TestCase):
         with self.assertRaisesRegex(Refusal, "plays games"):
             study_file.read(str(self.folder / "tap.xml"))
 
+    def test_a_number_that_no_player_has_is_one_sentence(self):
+        for number in ("4294967296", "9" * 5000, "-1", "\u0661", "1_0", " 1", ""):
+            self.assertFalse(players.is_player(f"observer:{number}"), number[:20])
+            if number.strip() not in ("", "1"):
+                with self.assertRaisesRegex(ValueError, "is no number of a player"):
+                    players.numbers_of(f"0 {number}")
+        self.assertTrue(players.is_player("observer:4294967295"))
+
     def checked(self, rule, failing):
         with mock.patch.object(players, "failing", side_effect=lambda player: failing.get(player.number, ())):
             return players.checked(players.several("observer", "0-3", 1, 0), rule, self.said.append)
@@ -113,6 +123,28 @@ class Players(unittest.TestCase):
             for words in (["--player", "robot"], ["--player", "observer:x"], ["--population", "3"], ["--player", "stage_model", "--practice", "3"]):
                 with self.assertRaises(Refusal):
                     asked(*words)
+
+    def test_a_sweep_of_more_games_than_a_table_holds_is_refused_before_the_checks_of_its_players(self):
+        study = self.study('<player name="observer" numbers="0-999"/>')
+        largest = virtual_games.MOST // (1000 * len(study.conditions))
+        with mock.patch.object(players, "failing", return_value=()) as failing:
+            parsed = lambda games: sweep_main.parsed(["s", "--games", str(games), "--out", "o"])
+            self.assertEqual(len(sweep_main.players_of(parsed(largest), study)), 1000)
+            failing.reset_mock()
+            with self.assertRaisesRegex(Refusal, "2001000 games, and a sweep has at most 2000000"):
+                sweep_main.players_of(parsed(largest + 1), study)
+            failing.assert_not_called()
+        SweepFolder.begin(self.folder / "few", study, 1, study.players[:1])
+        stored = self.folder / "few" / "sweep.json"
+        stored.write_text(stored.read_text(encoding="utf-8").replace('"games": 1,', '"games": 1000000000000,'), encoding="utf-8")
+        with self.assertRaisesRegex(Refusal, "a sweep has at most"):
+            SweepFolder(self.folder / "few")
+
+    def test_the_lines_of_a_sweep_reach_the_terminal_without_control_characters(self):
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            sweep_main.say("sweep: falsifier \x9b2J\n\x1b]0;t\x07")
+        self.assertEqual(said.getvalue(), "sweep: falsifier \\x9b2J\\n\\x1b]0;t\\x07\n")
 
     def test_a_resumed_sweep_has_the_players_of_its_begin_and_an_old_one_those_of_fixed_rules(self):
         study = self.study("")

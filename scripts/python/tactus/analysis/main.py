@@ -100,16 +100,16 @@ def write(options, analysis, made):
 def print_summary(analysis, made, page, report):
     from tactus.analysis import operators
     who = f", observer = {analysis.observer}" if "simulated" in analysis.observer else ""
-    print(f"study analyse: {len(analysis.trials)} trials, {analysis.left_out} left out because the apparatus missed its tolerance{who}")
+    terminal.show(f"study analyse: {len(analysis.trials)} trials, {analysis.left_out} left out because the apparatus missed its tolerance{who}")
     if "limits" in made:
-        print(f"{'limit':9} {'sense':9} {'operator':10} {'by':34} {'value':>9} {'low':>9} {'high':>9} unit")
+        terminal.show(f"{'limit':9} {'sense':9} {'operator':10} {'by':34} {'value':>9} {'low':>9} {'high':>9} unit")
         for row in made["limits"]:
             beyond = "unknown" if math.isnan(row["value"]) else ("<" if operators.kind(row["operator"]) in operators.LOWER_IS_WORSE else ">") + f"{row['up_to']:.4g}"  # not reached up to this level
             fields = [f"{row[k]:9.4g}" if math.isfinite(row[k]) else f"{beyond:>9}" for k in ("value", "low", "high")]
-            print(f"{row['limit']:9} {row['modality']:9} {row['operator']:10} {row['by']:34} {' '.join(fields)} {row['unit']}")
+            terminal.show(f"{row['limit']:9} {row['modality']:9} {row['operator']:10} {row['by']:34} {' '.join(fields)} {row['unit']}")
         for note in dict.fromkeys(row["note"] for row in made["limits"] if row["note"]):
-            print(f"  note: {note}")
-    print(f"study analyse: {page}, {os.path.getsize(page) // 1000} kB, {report.gallery.count} figures, tables {', '.join(name + '.csv' for name in made)}")
+            terminal.show(f"  note: {note}")
+    terminal.show(f"study analyse: {page}, {os.path.getsize(page) // 1000} kB, {report.gallery.count} figures, tables {', '.join(name + '.csv' for name in made)}")
 
 
 def main(argv):
@@ -122,6 +122,6 @@ def main(argv):
         terminal.report_refusal(f"study analyse: {error}")
         return 1
     except OSError as error:
-        print(f"study analyse: {error.filename or 'a file'}: {error.strerror or error}; give folders with permission to read and write", file=sys.stderr)
+        terminal.report_refusal(f"study analyse: {error.filename or 'a file'}: {error.strerror or error}; give folders with permission to read and write")
         return 1
     return 0

@@ -42,7 +42,7 @@ async def follow(url, names, seconds, counted):
                 counted["values"] += len(said.get("values") or [])
                 counted["dropped"] = (said.get("pages") or {}).get("dropped", counted["dropped"])
             elif said["t"] == "reply" and not said.get("good", True):
-                print(f"follow: {said.get('text')}", file=sys.stderr)
+                terminal.report_refusal(f"follow: {said.get('text')}")
 
 
 def main(words):
@@ -58,7 +58,7 @@ def main(words):
     except (OSError, ValueError, websockets.WebSocketException) as error:
         # The run may end before this client; the counts are printed in any case.
         terminal.report_refusal(f"follow: {options.url.split('?')[0]} no longer answers ({error})")
-    print("  ".join(f"{name} {value}" for name, value in counted.items()))
+    terminal.show("  ".join(f"{name} {value}" for name, value in counted.items()))
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:
             json.dump({**counted, "seconds": options.seconds}, file, indent=2)

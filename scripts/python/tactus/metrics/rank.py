@@ -11,6 +11,7 @@ import os
 import pathlib
 import sys
 
+from tactus import terminal
 from tactus.metrics import ranking
 from tactus.option_parser import OptionParser
 from tactus.refusal import Refusal, sentence_of
@@ -41,7 +42,7 @@ def rank(words):
     games = sum(c["games"] for c in conditions if c["operator"])
     print(f"{games} games under {len(conditions)} conditions\n\n{'metric':22} {'loss, bits':>10} {'skill':>8}  loss of each operator that is left out")
     for row in ranked:
-        print(f"{row['metric']:22} {row['loss_bits']:10.3f} {row['skill']:8.3f}  " + ", ".join(f"{name} {loss:.2f}" for name, loss in row["groups"].items()))
+        terminal.show(f"{row['metric']:22} {row['loss_bits']:10.3f} {row['skill']:8.3f}  " + ", ".join(f"{name} {loss:.2f}" for name, loss in row["groups"].items()))
     result = {"command": "tactus --module tactus.metrics.rank --write", "data": os.path.relpath(os.path.abspath(options.games), ROOT), "games": games, "ranking": ranked}
     if options.write:
         ranking.STORED.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")

@@ -150,10 +150,10 @@ def conditions_of(tasks, options, store):
 def show(conditions, ranked):
     print(f"{'task':30} {'sense':8} {'operator':8} {'level':>6} {'right':>6} {'undegraded':>10}")
     for c in conditions:
-        print(f"{c['task']:30} {c['modality']:8} {c['operator']:8} {c['level']:6g} {c['success']:6.2f} {c['undegraded']:10.2f}")
+        terminal.show(f"{c['task']:30} {c['modality']:8} {c['operator']:8} {c['level']:6g} {c['success']:6.2f} {c['undegraded']:10.2f}")
     print(f"\n{'metric':22} {'loss, bits':>10} {'skill':>8} {'explained':>9}  loss of each task that is left out")
     for row in ranked:
-        print(f"{row['metric']:22} {row['loss_bits']:10.3f} {row['skill']:8.3f} {row['explained']:9.3f}  " + ", ".join(f"{name} {loss:.2f}" for name, loss in row["groups"].items()))
+        terminal.show(f"{row['metric']:22} {row['loss_bits']:10.3f} {row['skill']:8.3f} {row['explained']:9.3f}  " + ", ".join(f"{name} {loss:.2f}" for name, loss in row["groups"].items()))
 
 
 def main(words):

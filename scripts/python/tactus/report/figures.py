@@ -2,7 +2,7 @@
 import base64
 import os
 
-from tactus import palette
+from tactus import palette, terminal
 from tactus.plotting import matplotlib
 
 matplotlib.use("Agg")
@@ -69,6 +69,8 @@ class Gallery:
         """HTML of a numbered figure; caption: HTML."""
         self.count += 1
         path = os.path.join(self.folder, name)
+        for text in figure.findobj(plt.Text):  # names of others, which no font shows
+            text.set_text(terminal.printable(text.get_text()))
         figure.savefig(path + ".svg", metadata={"Date": None, "Creator": "Tactus"})
         figure.savefig(path + ".png", dpi=200, metadata={"Software": "Tactus"})
         plt.close(figure)

@@ -74,7 +74,7 @@ def main(words):
         logs = []
         for i, (log, name) in enumerate(zip(options.log, options.name)):
             if sys.stderr.isatty():
-                print(f"report: reading {log}", file=sys.stderr)
+                terminal.report_refusal(f"report: reading {log}")
             tables_of(log, os.path.join(folder, str(i)), options.run)
             try:
                 description.report_warnings(f"report: {log}", description.describe(log, options.run))
@@ -98,6 +98,6 @@ def main(words):
                                "figures": gallery.count, "tables": made.tables}, file, indent=1)
         except OSError as error:
             refuse(f"cannot write {error.filename or options.out} ({error.strerror}); give --out and --json files in writable folders")
-    print(f"report: {options.out}, {os.path.getsize(options.out) // 1000} kB, {gallery.count} figures in {gallery.folder}")
+    terminal.show(f"report: {options.out}, {os.path.getsize(options.out) // 1000} kB, {gallery.count} figures in {gallery.folder}")
     return 0
 

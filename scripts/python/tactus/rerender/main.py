@@ -34,7 +34,7 @@ import os
 import sys
 import time
 
-from tactus import own_files
+from tactus import own_files, terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import BIN, remedy
@@ -115,16 +115,16 @@ class Renderings:
                 self.output[name, sense] = render.render(words, lambda share, head=head: self.show_progress(f"{head}, {share} %", True))
             except render.Refused as e:
                 self.failed[name, sense] = str(e)
-                print(f"\n{head}: {e}" if self.terminal else f"{head}: {e}", file=sys.stderr)
+                terminal.report_error(("\n" if self.terminal else "") + terminal.one_line(f"{head}: {e}"))
         if self.terminal:
             print(file=sys.stderr)
 
     def show_progress(self, text, passing=False):
         """Prints a progress line; on a terminal it overwrites the last one, elsewhere passing lines are skipped."""
         if self.terminal:
-            print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+            print(f"\r\033[K{terminal.one_line(text)}", end="", file=sys.stderr, flush=True)
         elif not passing:
-            print(text, file=sys.stderr, flush=True)
+            terminal.report_refusal(text)
 
     def facts(self, name, sense):
         return render.facts(self.output[name, sense])
@@ -175,7 +175,7 @@ def show(head, lines):
     """Prints a table with fitted columns, the first left-aligned."""
     widths = [max(len(line[i]) for line in [head, *lines]) for i in range(len(head))]
     for line in [head, *lines]:
-        print("  ".join(cell.ljust(w) if i == 0 else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths))))
+        terminal.show("  ".join(cell.ljust(w) if i == 0 else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths))))
 
 
 def print_changes(rows):
@@ -217,7 +217,7 @@ def against_live(renderings, options):
             rows += live.against_live(sense, run, os.path.join(options.out, "as_run"), first)
     print()
     if not rows:
-        print(f"live: {run} has no results of the run")
+        terminal.show(f"live: {run} has no results of the run")
         return rows
     show(["live and again", "n", "p50", "p99", "most", "unit", "what"],
          [[r["sense"], str(r["n"]), *(number(r[k], 4) for k in ("p50", "p99", "max")), r["unit"], r["what"] + (f' ({r["note"]})' if r["note"] else "")]
@@ -258,7 +258,7 @@ def rerender(words):
         result["twice"] = compare_twice(renderings, options)
     if options.live:
         result["live"] = against_live(renderings, options)
-    print(f"\nrerender: results in {options.out}, after {time.monotonic() - begin:.0f} s")
+    terminal.show(f"\nrerender: results in {options.out}, after {time.monotonic() - begin:.0f} s")
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:
             json.dump(result, file, indent=2)

@@ -36,7 +36,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small
 
 import numpy as np
 
-from tactus import own_files
+from tactus import own_files, terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import BIN, remedy
@@ -132,7 +132,7 @@ def rerun_all(options, record, scene, drawn, profiles):
     for name, profile in profiles.items():
         forces, positions = [], []
         for number, ((hand, _), motion) in enumerate(zip(drawn, motions), 1):
-            print(f"rerun: {name}, hand {number} of {len(drawn)}", file=sys.stderr, flush=True)
+            terminal.report_refusal(f"rerun: {name}, hand {number} of {len(drawn)}")
             out = os.path.join(folder, name, str(number))
             words = play.words_of(scene, record, hand, motion, profile, options.set, seconds, out)
             time_s, position_m, force_N = play.play(words, record, hand, motion, options.log, options.run_number)
@@ -166,10 +166,10 @@ def print_results(hand, figures, notes):
         print(f"{name.split('_')[0] + ', ' + unit:16}{hand[name]['median']:9.3g}   {hand[name]['low']:.3g} to {hand[name]['high']:.3g}")
     print(f"\n{'profile':16}{'within 10 %':>12}{'RMS N':>9}{'peak N':>9}{'position mm':>13}{'wide interval':>15}")
     for name, f in figures.items():
-        print(f"{name:16}{100 * f['within_10_percent']:10.1f} %{f['difference_rms_N']:9.3f}{f['difference_peak_N']:9.2f}"
+        terminal.show(f"{name:16}{100 * f['within_10_percent']:10.1f} %{f['difference_rms_N']:9.3f}{f['difference_peak_N']:9.2f}"
               f"{1e3 * f['position_rms_m']:13.2f}{100 * f['spread_beyond_10_percent']:13.1f} %")
     for note in notes:
-        print(f"\nNote: {note}.")
+        terminal.show(f"\nNote: {note}.")
 
 
 def rerun(words):

@@ -11,7 +11,7 @@ import signal
 import sys
 import time
 
-from tactus import signals
+from tactus import signals, terminal
 from tactus.refusal import Refusal
 from tactus.sweep import virtual_games
 from tactus.sweep.chunk_file import Busy, ChunkFile
@@ -62,5 +62,5 @@ def main(words):
     except KeyboardInterrupt:
         return 130
     except (Refusal, OSError, ValueError) as error:
-        print(f"sweep job: {error}", file=sys.stderr)
+        terminal.report_refusal(f"sweep job: {error}")
         return 1

@@ -9,7 +9,7 @@ from tactus import players, signals, terminal
 from tactus.paths import remedy
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import study_file
-from tactus.sweep import adopted, player, progress
+from tactus.sweep import adopted, player, progress, virtual_games
 from tactus.sweep.runners import Parallel, Slurm
 from tactus.sweep.sweep_folder import SweepFolder
 
@@ -19,6 +19,12 @@ game is lost or repeated."""
 MAX_GAMES = 1_000_000
 POLL_S = 0.2
 REPORT_S = 5.0
+
+
+def say(text):
+    """Prints one line, which may contain names and texts of the user."""
+    terminal.show(terminal.one_line(text))
+    sys.stdout.flush()
 
 
 class Parser(argparse.ArgumentParser):
@@ -74,7 +80,8 @@ def players_of(a, study):
             found = players.several(name, numbers if colon else None, a.population, a.practice)
         except ValueError as error:
             raise Refusal(f"--player {a.player}: {error}") from None
-    return players.checked(found[:a.players], a.checks or study.checks, lambda line: print(f"sweep: {line}", flush=True))
+    virtual_games.require_few(study, a.games, len(found[:a.players]))  # before the checks, which take time
+    return players.checked(found[:a.players], a.checks or study.checks, lambda line: say(f"sweep: {line}"))
 
 
 def new(a):
@@ -96,7 +103,7 @@ def follow(folder, runner):
             said = now
             chunks = progress.chunks_of(folder)
             done = of - sum(chunk.left for chunk in chunks)
-            print(progress.sentence(done, of, (done - before) / max(now, 1e-9), progress.remaining(chunks, runner.workers)), flush=True)
+            say(progress.sentence(done, of, (done - before) / max(now, 1e-9), progress.remaining(chunks, runner.workers)))
         if over:
             return
         time.sleep(POLL_S)
@@ -114,14 +121,14 @@ def main(words):
         folder = SweepFolder(a.out) if a.resume else new(a)
         folder.hold()
         if a.table:
-            print(f"sweep: {adopted.adopt(folder, a.table)} games are reused from {a.table}", flush=True)
+            say(f"sweep: {adopted.adopt(folder, a.table)} games are reused from {a.table}")
         left = folder.unfinished()
-        print(f"sweep: {folder.study.name}, {len(folder.study.conditions)} conditions, {folder.games_each} games each with {players.described(folder.players)}, into {folder.path}", flush=True)
+        say(f"sweep: {folder.study.name}, {len(folder.study.conditions)} conditions, {folder.games_each} games each with {players.described(folder.players)}, into {folder.path}")
         if not a.resume:
-            print(f"sweep: size of this run: {len(folder.players)} of the {len(folder.study.players)} players of the study, {len(folder.study.conditions)} conditions, "
-                  f"{folder.games_each} games each, {folder.done()[1]} games in all", flush=True)
+            say(f"sweep: size of this run: {len(folder.players)} of the {len(folder.study.players)} players of the study, {len(folder.study.conditions)} conditions, "
+                  f"{folder.games_each} games each, {folder.done()[1]} games in all")
             for f in folder.study.falsifiers:
-                print(f"sweep: falsifier {f.name}: {f.text} Decided by {f.decided_by}, not by these games", flush=True)
+                say(f"sweep: falsifier {f.name}: {f.text} Decided by {f.decided_by}, not by these games")
         if left:
             signals.handle([signal.SIGTERM], stop)
             runner = Slurm(folder, left, a.partition, a.array_size) if a.slurm else Parallel(folder, left, a.jobs or len(os.sched_getaffinity(0)))
@@ -131,7 +138,7 @@ def main(words):
                 runner.end()
         rows = folder.merge()
         missed = sum(r.get("missed") == 1 for r in rows)
-        print(f"sweep: {len(rows)} games of {players.described(folder.players)} in {folder.path / 'games.csv'}" + (f"; {missed} failed, see the column missed_reason" if missed else ""))
+        say(f"sweep: {len(rows)} games of {players.described(folder.players)} in {folder.path / 'games.csv'}" + (f"; {missed} failed, see the column missed_reason" if missed else ""))
         if folder.unfinished():
             raise Refusal(f"not all games were played ({runner.said()}); continue with --resume")
         return 0

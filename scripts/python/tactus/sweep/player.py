@@ -19,7 +19,7 @@ class Player:
         self.scratch = tempfile.TemporaryDirectory(prefix="games-")
         try:
             self.process = subprocess.Popen([str(PROGRAM), str(self.scene), "--out", self.scratch.name], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                            stderr=subprocess.PIPE, text=True)
+                                            stderr=subprocess.PIPE, text=True, errors="replace")
         except OSError as error:
             self.scratch.cleanup()
             raise Refusal(f"{PROGRAM}: cannot be run ({error.strerror}); {remedy()}") from None

@@ -10,7 +10,7 @@ from tactus import own_files, players
 from tactus.refusal import Refusal
 from tactus.study import study_file, trial_table
 from tactus.sweep import chunk_file
-from tactus.sweep.virtual_games import games_of
+from tactus.sweep.virtual_games import games_of, require_few
 
 LARGEST_BYTES = 100_000  # of sweep.json: design, far above any
 
@@ -24,12 +24,15 @@ class SweepFolder:
             self.asked = json.loads(own_files.read_regular(self.path / "sweep.json", LARGEST_BYTES))
             self.games_each, study = int(self.asked["games"]), str(self.asked["study"])
             self.players = [player_of(p) for p in self.asked.get("players", [{}])]
+            if self.games_each < 1 or not 1 <= len(self.players) <= players.MOST:
+                raise ValueError
         except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise Refusal(f"{self.path}: holds no sweep to resume; remove --resume and give a new --out") from None
         self.study = study_file.read(study)
         for file, sha256, name in ((self.study.path, self.study.sha256, "study_sha256"), (self.study.scene, scene_sha256(self.study), "scene_sha256")):
             if sha256 != self.asked.get(name):
                 raise Refusal(f"{file}: has changed since this sweep began, so its games would differ; start a new sweep with another --out")
+        require_few(self.study, self.games_each, len(self.players))
         self.chunks = games_of(self.study, self.games_each, self.players)
         (self.path / "chunks").mkdir(exist_ok=True)
         trial_table.replace(self.path / "study.xml", self.study.path.read_bytes())  # for an analysis on another machine

@@ -3,8 +3,10 @@ import dataclasses
 import hashlib
 
 from tactus import players
+from tactus.refusal import Refusal
 
 CHUNK = 50  # games of one job, about 15 s: short against the sweep, long against reading the scene; design
+MOST = 2_000_000  # games of a sweep: their table of about 300 bytes each stays below trial_table.LARGEST_BYTES; design
 
 
 @dataclasses.dataclass(frozen=True)
@@ -20,6 +22,14 @@ class Game:
         exact in JSON."""
         text = f"{study.seed}|{'' if study.stimulus.common_starts else self.condition.id}|{self.repetition}"
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") >> 11
+
+
+def require_few(study, repetitions, number_of_players):
+    """Raises Refusal when a sweep would have more games than MOST."""
+    count = repetitions * number_of_players * len(study.conditions)
+    if count > MOST:
+        raise Refusal(f"--games {repetitions}: with {number_of_players} players and {len(study.conditions)} conditions these are {count} games, and a sweep has at most {MOST}; give fewer "
+                      "games, players or conditions")
 
 
 def games_of(study, repetitions, all_players=(players.Player(),)):
