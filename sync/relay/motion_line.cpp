@@ -11,8 +11,6 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::int64_t kMaxGap = 1'000'000;  // of numbers; a larger one is another sender under the same name
-
 SimTime published_at(const tool_state_t& m) { return sim_time(m.header.publish_time_ns); }
 
 }  // namespace
@@ -24,7 +22,13 @@ bool carries_motion(const PassRule& rule) {
 
 bool MotionSender::send(const tool_state_t& m) {
   if (tools_.size() >= kMaxTools && !tools_.contains(m.tool)) tools_.clear();
-  return tools_.try_emplace(m.tool, def_).first->second.send(published_at(m), signals_of(m), to_eigen(m.proxy_velocity_m_s).norm());
+  Tool& tool = tools_.try_emplace(m.tool, def_).first->second;
+  const SequenceStatus status = tool.numbers.observe(m.header);
+  if (status == SequenceStatus::kOld) return false;
+  // The time of a wrong message may be ahead: a deadband would wait for it.
+  if (status != SequenceStatus::kNew || published_at(m) < tool.newest) tool.deadband = Deadband(def_);
+  tool.newest = published_at(m);
+  return tool.deadband.send(published_at(m), signals_of(m), to_eigen(m.proxy_velocity_m_s).norm());
 }
 
 bool MotionReceiver::push(std::span<const std::uint8_t> message, HostTime arrival) {
@@ -34,16 +38,19 @@ bool MotionReceiver::push(std::span<const std::uint8_t> message, HostTime arriva
   if (hands_.size() >= kMaxHands && !hands_.contains(key)) hands_.clear();
   const auto [it, is_new] = hands_.try_emplace(key);
   Hand& hand = it->second;
-  const header_t& before = hand.newest.header;
+  const header_t before = hand.newest.header;
   if (is_new || before.incarnation != m->header.incarnation) {
     hand = {};
     hand.seq = m->header.seq;
-  } else {
-    if (m->header.publish_time_ns <= before.publish_time_ns) return true;  // a repetition, or overtaken
-    hand.seq += std::clamp<std::int64_t>(m->header.seq - before.seq - 1, 0, kMaxGap);
-    const double passed_ns = static_cast<double>(m->header.publish_time_ns - before.publish_time_ns);
-    hand.sim_per_publish = std::clamp(static_cast<double>(m->header.sim_time_ns - before.sim_time_ns) / passed_ns, 0.0, 1.0);
   }
+  const SequenceStatus status = hand.numbers.observe(m->header);
+  if (status == SequenceStatus::kOld) return true;  // a repetition, or overtaken
+  if (status == SequenceStatus::kNew) {
+    hand.seq += m->header.seq - before.seq - 1;
+    if (const double passed_ns = static_cast<double>(m->header.publish_time_ns - before.publish_time_ns); passed_ns > 0)
+      hand.sim_per_publish = std::clamp(static_cast<double>(m->header.sim_time_ns - before.sim_time_ns) / passed_ns, 0.0, 1.0);
+  }
+  if (status == SequenceStatus::kNewEpoch) hand.motion = {};
   hand.newest = *m;
   hand.arrival = arrival;
   hand.motion.add(published_at(*m), *m, def_);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "sync/bus/sequence.h"
 #include "sync/degradation/deadband.h"
 #include "sync/degradation/motion_codec.h"
 #include "sync/relay/rules.h"
@@ -20,21 +21,30 @@
 
 namespace tactus::sync {
 
+// Longest time of resend=, s: a hand behind a broken line moves on for twice this time. Design.
+inline constexpr double kMaxMotionResend_s = 1;
+
 // True for a rule whose motions are sent and published again by this file: a deadband of velocity or position on TOOL_STATE with a
 // time of resend.
 bool carries_motion(const PassRule& rule);
 
-// The sending end, for one sender.
+// The sending end, for one sender. No message, with any number or time, stops the motion that follows.
 class MotionSender {
  public:
   explicit MotionSender(const DeadbandDef& deadband) : def_(deadband) {}
-  // True when this message must be sent.
+  // True when this message must be sent: never for a repetition, which the receiver would ignore.
   bool send(const tool_state_t& m);
 
  private:
   static constexpr std::size_t kMaxTools = 64;  // more come only from corrupt messages
+  struct Tool {
+    explicit Tool(const DeadbandDef& def) : deadband(def) {}
+    SequenceTracker numbers;
+    Deadband deadband;
+    SimTime newest{};  // publication
+  };
   DeadbandDef def_;
-  std::map<std::int32_t, Deadband> tools_;
+  std::map<std::int32_t, Tool> tools_;
 };
 
 // The receiving end of one line, for all senders.
@@ -56,6 +66,7 @@ class MotionReceiver {
     HostTime arrival{};           // of it
     double sim_per_publish = 1;   // rate of simulated time over publication time, between the two newest messages; at first, of a world that runs
     MotionCodec motion;
+    SequenceTracker numbers;      // of the messages from the line
     std::int64_t seq = 0;         // of the next published message
   };
   using Key = std::pair<std::int32_t, std::int32_t>;  // source and tool

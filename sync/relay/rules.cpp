@@ -87,6 +87,9 @@ PassRule parse_pass(const tinyxml2::XMLElement& e) {
     throw std::invalid_argument(
         "predict=linear needs a receiver that predicts: give the channel TOOL_STATE, a deadband of velocity or position, and resend=, for "
         "example resend=20ms, after twice of which a silent hand stops; or remove predict=linear");
+  if (carries_motion(rule) && rule.thinning.deadband->resend_s > kMaxMotionResend_s)
+    throw std::invalid_argument(
+        "resend= of a hand is longer than a second: behind a broken line the hand would move on for twice that time; give at most 1s");
   return rule;
 }
 

@@ -46,6 +46,7 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
                                      const HeightMaps& height_maps, LookFiles look_files) {
   settings_ = settings;
   scene_ = scene;
+  std::erase_if(tools_, [this](const auto& tool) { return !may_show(tool.first); });
   head_tool_ = head_of(scene);
   head_.forget();
   view_.emplace(scene, meshes, settings, height_maps, std::move(look_files));
@@ -192,7 +193,7 @@ void FrameComposer::add_tools(Frame& frame, sync::HostTime presented, sync::Host
     }
     const tool_state_t& m = report->state;
     frame.samples.push_back({tool, m.header.seq});
-    if (tool < 0 || static_cast<std::size_t>(tool) >= frame.tools.size()) continue;
+    if (!scene_) continue;
     ToolPose& pose = frame.tools[static_cast<std::size_t>(tool)];
     pose = tool_pose(m, frame.instant);
     const Eigen::Vector3d beside = drawn.display.step(pose.proxy.translation(), settings_.display_gain, dt_s);

@@ -61,7 +61,7 @@ class FrameComposer {
   void push(const world_state_t& m, sync::HostTime arrival) { bodies_.push(m, arrival); }
   void push(const contact_events_t& m, sync::HostTime arrival) { contacts_.push(m, arrival); }
   void push(const tool_state_t& m, sync::HostTime arrival) {
-    tools_[m.tool].reports.push(m, arrival);
+    if (may_show(m.tool)) tools_[m.tool].reports.push(m, arrival);
     if (m.tool == head_tool_) head_.push(m, arrival);
   }
   // Loads a new scene and returns its view, which supplies the geometries to the renderer. Bodies and events are
@@ -114,6 +114,9 @@ class FrameComposer {
   struct Delays {
     sync::Nanoseconds delay, view_delay;
   };
+  static constexpr int kMaxTools = 64;  // before a scene; more come only from corrupt messages
+  // False for a tool that the scene does not have: its reports are not stored.
+  bool may_show(int tool) const { return tool >= 0 && tool < (scene_ ? static_cast<int>(scene_->tools.size()) : kMaxTools); }
   void draw(Frame& frame, sync::HostTime now, const Delays& delays, std::optional<sync::SimTime> instant,
             const sync::Sample<sync::BodyPose>& head, sync::HostTime newest_arrival);
   void add_due_flashes(sync::HostTime t, sync::Nanoseconds delay, sync::Nanoseconds held);

@@ -4,6 +4,7 @@ from tactus.refusal import Refusal
 from tactus.tables import decoded
 
 LARGEST_BYTES = 1_000_000
+ENCODINGS = ("UTF-8", "US-ASCII", "ASCII")  # of the declaration of a file; ASCII is a part of UTF-8
 
 
 def root_of(path, text, kind, shipped=(), largest_bytes=LARGEST_BYTES, keeps_comments=False):
@@ -26,4 +27,7 @@ def root_of(path, text, kind, shipped=(), largest_bytes=LARGEST_BYTES, keeps_com
         raise Refusal(f"{text}:1: {str(error).splitlines()[0]}") from None
     if root.getroottree().docinfo.internalDTD is not None:
         raise Refusal(f"{text}:1: has a <!DOCTYPE>, but {kind} uses no entities and no defaults; remove it and write its entities out")
+    encoding = root.getroottree().docinfo.encoding
+    if encoding and encoding.upper() not in ENCODINGS:
+        raise Refusal(f"{text}:1: declares the encoding {encoding}; save the file as UTF-8, and declare that")
     return root, data

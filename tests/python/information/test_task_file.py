@@ -58,7 +58,7 @@ class TaskFiles(unittest.TestCase):
                                        ('name="steel"', 'name="oak"', 4, "the value oak occurs twice"), (" to=\"steel\"", "", 4, "<set> needs the attribute to"),
                                        ("400ms", "5ms", 7, "shorter than 10 ms, which no sense perceives"), ("window", "look", 7, "<look> is not an element of <task>"), ("400ms", "1400ms", 7, "does not lie in the 1 s of the task"),
                                        ('<value name="steel">', '<value name="steel" size="3">', 4, "<value> has no attribute size"), ("</task>", "", 9, ""),
-                                       ("<task", "<!DOCTYPE task><task", 1, "DOCTYPE")):
+                                       ("<task", '<?xml version="1.0" encoding="ISO-8859-1"?><task', 1, "declares the encoding ISO-8859-1; save"), ("<task", "<!DOCTYPE task><task", 1, "DOCTYPE")):
             with self.subTest(new), self.assertRaises(Refusal) as caught:
                 self.read(TASK.replace(old, new))
             self.assertIn(reason, str(caught.exception))

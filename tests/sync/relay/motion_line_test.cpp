@@ -1,8 +1,10 @@
 // Tests of the motion of a hand over a line between two relays, with a deadband and a predictor.
 #include "sync/relay/motion_line.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "lcmtypes/channels.h"
@@ -213,6 +215,56 @@ TEST_CASE("Two hands of one sender keep their own motions") {
   }
 }
 
+TEST_CASE("No message of a hand, with any number or time, stops its motion") {
+  using Change = void (*)(header_t&);
+  constexpr std::int64_t kLatest_ns = 1'000'000'000'000'000'000;
+  const std::array<std::pair<const char*, Change>, 9> changes{{
+      {"half a second ahead", [](header_t& h) { h.publish_time_ns += 500'000'000; }},
+      {"half a second ahead, with a later number", [](header_t& h) { h.publish_time_ns += 500'000'000, h.seq += 2; }},
+      {"ten seconds ahead", [](header_t& h) { h.publish_time_ns += 10'000'000'000; }},
+      {"at the end of time", [](header_t& h) { h.publish_time_ns = kLatest_ns; }},
+      {"at the begin of time", [](header_t& h) { h.publish_time_ns = 0; }},
+      {"a thousand numbers ahead", [](header_t& h) { h.seq += 1000; }},
+      {"an impossible number", [](header_t& h) { h.seq = std::numeric_limits<std::int64_t>::max(); }},
+      {"the first number", [](header_t& h) { h.seq = 0; }},
+      {"the end of the world", [](header_t& h) { h.sim_time_ns = kLatest_ns; }},
+  }};
+  for (const bool on_line : {false, true})
+    for (const bool moves : {false, true})
+      for (const auto& [name, change] : changes) {
+        INFO(name << (on_line ? ", on the line" : ", on the bus") << (moves ? ", of a hand that moves" : ", of a hand at rest"));
+        MotionLine line("10% velocity floor=1cm/s predict=linear resend=20ms");
+        const MovingHand hand(2);
+        const auto at = [&](int ms) {
+          tool_state_t m = hand.at(ms);
+          if (!moves) {
+            const header_t header = m.header;
+            m = hand.at(0);
+            m.header = header, m.device_velocity_m_s = m.proxy_velocity_m_s = {};
+          }
+          return m;
+        };
+        int unpublished = 0;
+        for (int ms = 0; ms < 700; ++ms) {
+          std::vector<tool_state_t> messages{at(ms)};
+          if (ms == 300) {
+            tool_state_t wrong = at(ms);
+            ++wrong.header.seq;
+            change(wrong.header);
+            if (on_line)
+              line.there.on_line_message(0, *parse_line_datagram(line_datagram({channels::kToolState, encode(wrong)}, false)), motion_ms(ms));
+            else
+              messages.push_back(wrong);
+          }
+          const auto published = line.step(ms, messages);
+          unpublished += published.empty();
+          if (ms < 300 + 3 * 20 + 5 || published.empty()) continue;  // three contradictions, and the next packet
+          CHECK(apart(published.back(), at(ms)) < (moves ? 0.3 : 1e-9));
+        }
+        CHECK(unpublished == 0);
+      }
+}
+
 TEST_CASE("An invalid motion from a line is counted and not published") {
   MotionLine line("10% velocity resend=20ms");
   std::vector<std::uint8_t> bytes = encode(MovingHand(1).at(0));
@@ -237,4 +289,6 @@ TEST_CASE("predict=linear of a relay needs a motion and a time of resend") {
     CHECK(motion_refusal(pass).find("rules.xml:2: predict=linear needs a receiver that predicts: give the channel TOOL_STATE") == 0);
   CHECK(motion_refusal("channel='TOOL_STATE' deadband='10% velocity predict=linear resend=20ms'").empty());
   CHECK(motion_refusal("channel='TOOL_STATE' deadband='10% position resend=20ms'").empty());
+  CHECK(motion_refusal("channel='TOOL_STATE' deadband='10% position resend=1s'").empty());
+  CHECK(motion_refusal("channel='TOOL_STATE' deadband='10% position resend=1001ms'").find("behind a broken line the hand would move on") != std::string::npos);
 }

@@ -118,6 +118,31 @@ TEST_CASE("A hand that is lost disappears from a late picture later by the delay
   CHECK(hand.frame(milliseconds(300), milliseconds(300)).tools.at(0).known);
 }
 
+TEST_CASE("Reports of tools that the scene does not have take no memory and are not shown") {
+  MovingHand hand;
+  hand.run(milliseconds(300));
+  auto other = hand.message<tool_state_t>();
+  other.proxy.orientation.w = other.device.orientation.w = 1;
+  for (int tool = 1; tool < 100'000; ++tool) {
+    other.tool = tool;
+    hand.composer.push(other, hand.now());
+  }
+  const Frame f = hand.frame({}, {});
+  CHECK(f.tools.size() == 1);
+  CHECK(f.samples.size() == 1);
+}
+
+TEST_CASE("Before a scene the reports of a limited number of tools are stored") {
+  FrameComposer composer{kToolRun, Settings{}};
+  tool_state_t report{};
+  report.proxy.orientation.w = report.device.orientation.w = 1;
+  for (int tool = 0; tool < 10'000; ++tool) {
+    report.tool = tool;
+    composer.push(report, sync::host_time(kToolBegan_ns));
+  }
+  CHECK(composer.frame(sync::host_time(kToolBegan_ns), 0).samples.size() == 64);
+}
+
 TEST_CASE("The history of a tool stays limited, and a log that starts again replaces it") {
   ToolHistory history;
   tool_state_t state{};

@@ -29,7 +29,6 @@ SOFTER = "Which of the two felt softer?"  # default question for two presses of 
 # The haptic node adapts its coupling to these operators of its input and recovers within seconds (LoopDelay in haptic_node/rendering/coupling.h). A degraded
 # press would therefore also soften the next press. A delay of the output ends immediately.
 SLOW_RECOVERY = ("network_delay", "jitter", "loss", "wire_loss", "reorder", "rate", "deadband")
-ENCODINGS = ("UTF-8", "US-ASCII", "ASCII")  # of the declaration of a file; ASCII is a part of UTF-8
 
 
 @dataclasses.dataclass(frozen=True)
@@ -90,9 +89,6 @@ def read(text, with_scene=True):
     from lxml import etree  # slow to import
     path = find(str(text))
     root, data = own_xml.root_of(path, text, "a study file", sorted(p.stem for p in SHIPPED.glob("*.xml")))
-    encoding = root.getroottree().docinfo.encoding
-    if encoding and encoding.upper() not in ENCODINGS:
-        raise Refusal(f"{text}:1: declares the encoding {encoding}; save the file as UTF-8, and declare that")
     if root.tag == "replication":
         raise Refusal(f"{text}:1: is a published experiment; run it with tactus study replicate, or give a <study>")
     schema = etree.XMLSchema(etree.parse(str(SCHEMA)))
