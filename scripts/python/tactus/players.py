@@ -2,6 +2,7 @@
 import dataclasses
 import subprocess
 
+from tactus import tables
 from tactus.paths import BIN, remedy
 from tactus.refusal import Refusal
 
@@ -49,8 +50,8 @@ class Player:
 
 
 def is_number(text):
-    """True for the number of a player. A text of thousands of digits is none: int() refuses it."""
-    return text.isascii() and text.isdigit() and len(text) <= len(str(LARGEST_NUMBER)) and int(text) <= LARGEST_NUMBER
+    """True for the number of a player."""
+    return tables.whole_number(text, 0, LARGEST_NUMBER) is not None
 
 
 def is_player(word):

@@ -90,6 +90,14 @@ def whole(row, name, where):
     return int(row[name])
 
 
+def whole_number(text, least, most):
+    """The whole number of a text of digits, from least >= 0 to most; None for any other text, also one of thousands of digits, which int() refuses."""
+    if not (text.isascii() and text.isdigit() and len(text.lstrip("0")) <= len(str(most))):
+        return None
+    value = int(text.lstrip("0") or "0")
+    return value if least <= value <= most else None
+
+
 def escaped(text):
     """The text of a cell, with an apostrophe before a formula; sync::csv_cell does the same."""
     return "'" + text if FORMULA.match(text) and not NUMBER.fullmatch(text) else text

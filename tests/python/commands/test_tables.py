@@ -1,5 +1,7 @@
 """Tables of other programs are read, or refused with file and line."""
+import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -9,6 +11,7 @@ from tactus import tables
 from tactus.launch import walls
 from tactus.refusal import Refusal
 
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 ROWS = [{"name": "a, b", "value": "1.5"}, {"name": "ä", "value": ""}]
 TEXT = 'name,value\n"a, b",1.5\nä,\n'
 
@@ -62,6 +65,23 @@ class Tables(unittest.TestCase):
     def test_an_empty_table_has_no_rows(self):
         self.path.write_bytes(b"\n\n")
         self.assertEqual(tables.read_rows(self.path), [])
+
+    def test_whole_numbers_of_options_have_digits_only_and_any_length_is_read_or_refused(self):
+        for text, value in (("0", 0), ("7", 7), ("0" * 5000 + "12", 12), ("100", 100)):
+            self.assertEqual(value, tables.whole_number(text, 0, 100))
+        for text in ("", "101", "9" * 5000, "-1", "+1", "1.0", "1_0", " 1", "\u0661", "\u00b2", "1\n"):
+            self.assertIsNone(tables.whole_number(text, 0, 100), text[:20])
+        self.assertIsNone(tables.whole_number("0", 1, 100))
+
+    def test_a_command_refuses_a_number_of_thousands_of_digits_with_one_sentence(self):
+        for words in (("metrics", __file__, "--run", "9" * 5000), ("rerun", __file__, "--run", "9" * 5000), ("rerun", __file__, "--seed", "9" * 5000), ("lab", "--hosts", "9" * 5000, "true"),
+                      ("run", "--player", "observer:" + "9" * 5000)):
+            done = subprocess.run([ROOT / "scripts" / "tactus", *words], capture_output=True, text=True, check=False, timeout=60,
+                                  env={**os.environ, "TACTUS_BIN": "/nowhere"})  # builds nothing
+            self.assertEqual(1, done.returncode, words[:2])
+            self.assertNotIn("Traceback", done.stderr)
+            self.assertEqual(1, done.stderr.count("\n"), done.stderr[-300:])
+            self.assertNotIn("set_int_max_str_digits", done.stderr)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ import signal
 import subprocess
 import sys
 
-from tactus import signals, terminal
+from tactus import signals, tables, terminal
 from tactus.cluster import lab
 from tactus.paths import tactus_command
 
@@ -36,11 +36,12 @@ def parse_host_names(words):
             names, words = words[1], words[2:]
     if words and words[0].startswith("-"):
         raise lab.Error(f"{words[0]}: there is no such option; see tactus lab --help")
+    given = names
     if names.isdigit():
-        names = ",".join(f"host{n}" for n in range(1, int(names) + 1))
+        names = ",".join(f"host{n}" for n in range(1, 1 + (tables.whole_number(names, 1, lab.MAX_HOSTS) or 0)))
     names = names.split(",")
     if not 1 <= len(names) <= lab.MAX_HOSTS or len(set(names)) != len(names) or not all(n[:1].isalnum() and n.replace("-", "").isalnum() and n.isascii() for n in names):
-        raise lab.Error(f"--hosts {','.join(names)[:60]}: give a number from 1 to {lab.MAX_HOSTS}, or different names of letters, digits and hyphens")
+        raise lab.Error(f"--hosts {given[:60]}: give a number from 1 to {lab.MAX_HOSTS}, or different names of letters, digits and hyphens")
     if not words:
         raise lab.Error("name a command to run in the lab; see tactus lab --help")
     return names, words

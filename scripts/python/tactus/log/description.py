@@ -3,7 +3,7 @@ import json
 import os
 import subprocess
 
-from tactus import terminal
+from tactus import tables, terminal
 from tactus.paths import BIN, remedy
 from tactus.refusal import Refusal
 
@@ -33,4 +33,4 @@ def report_warnings(name, description):
 
 def run_number(text):
     """The number of --run, or None when the text is no whole number from 1 to a million."""
-    return int(text) if text.isascii() and text.isdigit() and 1 <= int(text) <= 1_000_000 else None
+    return tables.whole_number(text, 1, 1_000_000)

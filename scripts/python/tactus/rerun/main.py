@@ -36,7 +36,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small
 
 import numpy as np
 
-from tactus import own_files, terminal
+from tactus import own_files, tables, terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import BIN, remedy
@@ -70,9 +70,10 @@ def arguments(words):
         raise Refusal(f"--run {options.run_number}: is not the number of a run; see replay LOG --describe")
     for name, least, most in (("draws", 1, 200), ("seed", 0, 2**63 - 1)):
         text = getattr(options, name)
-        if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
+        value = tables.whole_number(text, least, most)
+        if value is None:
             raise Refusal(f"--{name} {text}: give a whole number from {least} to {most}")
-        setattr(options, name, int(text))
+        setattr(options, name, value)
     beside = options.log if os.path.isdir(options.log) else os.path.dirname(os.path.abspath(options.log))
     options.out = options.out or os.path.join(beside, "rerun")
     if os.path.exists(options.out) and (not os.path.isdir(options.out) or os.listdir(options.out)):
