@@ -12,6 +12,8 @@ import stat
 
 from tactus.refusal import Refusal
 
+RESULT_KINDS = (".lcmlog", ".wav", ".mp4")  # recordings in the folder of a run or of a rendering, and the tables that commands read there
+RESULT_NAMES = ("summary.json", "haptic.csv", "thermal.csv", "events.csv", "frames.csv")
 OPEN_FLAGS = os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY
 
 
@@ -77,8 +79,8 @@ def results_folder(path):
 
 
 def require_writable(option, path, inputs=()):
-    """Refuses an output file before long work: in a folder that is missing or closed, a folder itself, or one of the inputs. option: its option, for messages; path None: there
-    is none. Raises Refusal."""
+    """Refuses an output file before long work: in a folder that is missing or closed, a folder itself, or one of the inputs, or a result in an input folder. option: its option,
+    for messages; path None: there is none. Raises Refusal."""
     if path is None:
         return
     if not path or os.path.isdir(path) or path.endswith("/"):
@@ -90,8 +92,15 @@ def require_writable(option, path, inputs=()):
     if reason:
         raise Refusal(f"{option} {path}: cannot be written, because {reason}; name a file in a writable folder")
     for given in inputs:
-        if os.path.exists(path) and os.path.exists(given) and os.path.samefile(path, given):
+        if os.path.exists(path) and os.path.exists(given) and (os.path.samefile(path, given) or is_result_in(path, given)):
             raise Refusal(f"{option} {path}: is the input itself, which it would replace; name another file")
+
+
+def is_result_in(path, folder):
+    """True for a recording or a table of a run in its folder."""
+    name = os.path.basename(path)
+    is_result = name.endswith(RESULT_KINDS) or name in RESULT_NAMES or name.startswith("presented") and name.endswith(".csv")
+    return is_result and os.path.isdir(folder) and os.path.samefile(os.path.dirname(os.path.abspath(path)), folder)
 
 
 def open_own(path):

@@ -1,4 +1,5 @@
 """Tests that files and folders of other users, links and named pipes are not used."""
+import contextlib
 import os
 import pathlib
 import sys
@@ -40,6 +41,13 @@ class OwnFiles(unittest.TestCase):
         for path in (None, str(self.folder / "a.json"), "/dev/stdout"):
             own_files.require_writable("--json", path, [str(given)])
         self.assertFalse((self.folder / "a.json").exists())
+
+    def test_an_output_replaces_no_result_in_a_folder_that_is_an_input(self):
+        for name, replaces in (("run.lcmlog", True), ("haptic.csv", True), ("presented_audio.csv", True), ("summary.json", True), ("audio.wav", True), ("metrics.csv", False), ("metrics.json", False)):
+            (self.folder / name).write_bytes(b"")
+            for given, refused in ((self.folder, replaces), (pathlib.Path("/"), False)):
+                with self.assertRaisesRegex(Refusal, "is the input itself") if refused else contextlib.nullcontext():
+                    own_files.require_writable("--json", str(self.folder / name), [str(given)])
 
     def test_a_link_a_pipe_and_a_file_of_another_user_are_refused_without_waiting(self):
         (self.folder / "file").write_text("", encoding="utf-8")

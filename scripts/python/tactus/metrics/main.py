@@ -48,7 +48,8 @@ def arguments(words):
             raise Refusal(f"{path} has neither a log nor a haptic.csv; give the folder of a run or of tactus rerender")
         if not os.path.isdir(path) and not is_log(path):
             raise Refusal(f"{path} is neither a file nor a folder; give the folder of a run, its run.lcmlog, or a folder of tactus rerender")
-    own_files.require_writable("--csv", options.csv, [*options.run, *([options.reference] if options.reference else [])])
+    for option, path in (("--csv", options.csv), ("--json", options.json)):
+        own_files.require_writable(option, path, [*options.run, *([options.reference] if options.reference else [])])
     if description.run_number(options.number) is None:
         raise Refusal(f"--run {options.number}: is not the number of a run; see replay LOG --describe")
     return options
