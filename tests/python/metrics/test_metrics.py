@@ -234,6 +234,13 @@ class OtherTables(unittest.TestCase):
                 with self.assertRaisesRegex(Refusal, f"^{folder}/{said}" if said else "span 1e\\+09 s"):
                     of_run.metrics(folder, folder)
 
+    def test_an_energy_that_the_table_does_not_have_is_left_out_and_is_not_zero(self):
+        self.assertFalse({"injected_J", "generated_J"} & set(of_run.metrics(self.good)))
+        of_first_tick = self.written("energy", [row + (",0.25," if i == 0 else ",,") for i, row in enumerate(self.ROWS)], self.HEAD + ",injected_J,generated_J")
+        found = of_run.metrics(of_first_tick)
+        self.assertEqual(0.25, found["injected_J"])
+        self.assertNotIn("generated_J", found)
+
     def test_an_unknown_tool_is_refused(self):
         with self.assertRaisesRegex(Refusal, "--tool 7: haptic.csv has no such tool; it has 0"):
             of_run.metrics(self.good, tool="7")

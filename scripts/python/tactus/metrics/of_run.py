@@ -30,8 +30,8 @@ MEANING = {
 
 
 def tool_rows(folder, tool=None):
-    """{column: array} of one tool of haptic.csv; tool None: the first with a simulated time. {} without such a table, or without rows. Raises Refusal with file
-    and line, and for a tool that the table does not have."""
+    """{column: array} of one tool of haptic.csv; tool None: the first with a simulated time; energies: only the values that the table has. {} without such a table, or
+    without rows. Raises Refusal with file and line, and for a tool that the table does not have."""
     path = os.path.join(folder, "haptic.csv")
     if not os.path.isfile(path):
         return {}
@@ -44,7 +44,8 @@ def tool_rows(folder, tool=None):
             for name in needed:
                 columns[name].append(files.number(row, name, where))
             for name in energies:
-                columns[name].append(files.number(row, name, where) if row.get(name) else 0.0)
+                if row.get(name):
+                    columns[name].append(files.number(row, name, where))
     if tool is not None and tools and tool not in tools:
         raise Refusal(f"--tool {tool}: haptic.csv has no such tool; it has {', '.join(sorted(tools))}")
     return {name: np.array(values) for name, values in columns.items()} if columns["time_s"] else {}
