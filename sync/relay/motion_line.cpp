@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lcmtypes/channels.h"
+#include "lcmtypes/valid.h"
 #include "lcmtypes/vectors.h"
 #include "sync/bus/decode.h"
 #include "sync/degradation/snapshot.h"
@@ -10,6 +11,14 @@
 
 namespace tactus::sync {
 namespace {
+
+constexpr std::int64_t kMaxGap = 1'000'000;        // of numbers; a larger one is wrong
+constexpr std::int64_t kClockStep_ns = 1'000'000'000;   // a clock that falls back by more was wrong before, or is another one
+
+// A repetition, or overtaken: number and time are not newer.
+bool is_old(const header_t& h, const header_t& newest) {
+  return h.seq <= newest.seq && h.publish_time_ns <= newest.publish_time_ns && newest.publish_time_ns - h.publish_time_ns <= kClockStep_ns;
+}
 
 SimTime published_at(const tool_state_t& m) { return sim_time(m.header.publish_time_ns); }
 
@@ -22,12 +31,12 @@ bool carries_motion(const PassRule& rule) {
 
 bool MotionSender::send(const tool_state_t& m) {
   if (tools_.size() >= kMaxTools && !tools_.contains(m.tool)) tools_.clear();
-  Tool& tool = tools_.try_emplace(m.tool, def_).first->second;
-  const SequenceStatus status = tool.numbers.observe(m.header);
-  if (status == SequenceStatus::kOld) return false;
-  // The time of a wrong message may be ahead: a deadband would wait for it.
-  if (status != SequenceStatus::kNew || published_at(m) < tool.newest) tool.deadband = Deadband(def_);
-  tool.newest = published_at(m);
+  const auto [it, is_new] = tools_.try_emplace(m.tool, Tool{Deadband(def_), m.header});
+  Tool& tool = it->second;
+  if (!is_new && is_old(m.header, tool.newest)) return false;
+  // A time ahead was wrong: the deadband would wait for it.
+  if (m.header.publish_time_ns < tool.newest.publish_time_ns) tool.deadband = Deadband(def_);
+  tool.newest = m.header;
   return tool.deadband.send(published_at(m), signals_of(m), to_eigen(m.proxy_velocity_m_s).norm());
 }
 
@@ -38,19 +47,16 @@ bool MotionReceiver::push(std::span<const std::uint8_t> message, HostTime arriva
   if (hands_.size() >= kMaxHands && !hands_.contains(key)) hands_.clear();
   const auto [it, is_new] = hands_.try_emplace(key);
   Hand& hand = it->second;
-  const header_t before = hand.newest.header;
+  const header_t& before = hand.newest.header;
   if (is_new || before.incarnation != m->header.incarnation) {
     hand = {};
     hand.seq = m->header.seq;
-  }
-  const SequenceStatus status = hand.numbers.observe(m->header);
-  if (status == SequenceStatus::kOld) return true;  // a repetition, or overtaken
-  if (status == SequenceStatus::kNew) {
-    hand.seq += m->header.seq - before.seq - 1;
+  } else {
+    if (is_old(m->header, before)) return true;
+    if (const std::int64_t lost = m->header.seq - before.seq - 1; lost > 0 && lost <= kMaxGap) hand.seq += lost;
     if (const double passed_ns = static_cast<double>(m->header.publish_time_ns - before.publish_time_ns); passed_ns > 0)
       hand.sim_per_publish = std::clamp(static_cast<double>(m->header.sim_time_ns - before.sim_time_ns) / passed_ns, 0.0, 1.0);
   }
-  if (status == SequenceStatus::kNewEpoch) hand.motion = {};
   hand.newest = *m;
   hand.arrival = arrival;
   hand.motion.add(published_at(*m), *m, def_);
@@ -69,7 +75,7 @@ std::optional<tool_state_t> MotionReceiver::motion_at(Hand& hand, HostTime now) 
   if (m.header.sim_time_ns >= 0) m.header.sim_time_ns += static_cast<std::int64_t>(hand.sim_per_publish * static_cast<double>(since.count()));
   m.header.seq = hand.seq++;
   m.touch_status = std::max(m.touch_status, static_cast<std::int8_t>(SampleStatus::kHeld));
-  if (!hand.motion.reconstruct(published_at(m), m)) return std::nullopt;
+  if (!hand.motion.reconstruct(published_at(m), m) || !valid(m)) return std::nullopt;
   return m;
 }
 

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "sync/bus/sequence.h"
 #include "sync/degradation/deadband.h"
 #include "sync/degradation/motion_codec.h"
 #include "sync/relay/rules.h"
@@ -28,7 +27,7 @@ inline constexpr double kMaxMotionResend_s = 1;
 // time of resend.
 bool carries_motion(const PassRule& rule);
 
-// The sending end, for one sender. No message, with any number or time, stops the motion that follows.
+// The sending end, for one sender. A message with a wrong number or time stops the motion that follows for at most a second.
 class MotionSender {
  public:
   explicit MotionSender(const DeadbandDef& deadband) : def_(deadband) {}
@@ -38,10 +37,8 @@ class MotionSender {
  private:
   static constexpr std::size_t kMaxTools = 64;  // more come only from corrupt messages
   struct Tool {
-    explicit Tool(const DeadbandDef& def) : deadband(def) {}
-    SequenceTracker numbers;
     Deadband deadband;
-    SimTime newest{};  // publication
+    header_t newest{};
   };
   DeadbandDef def_;
   std::map<std::int32_t, Tool> tools_;
@@ -66,7 +63,6 @@ class MotionReceiver {
     HostTime arrival{};           // of it
     double sim_per_publish = 1;   // rate of simulated time over publication time, between the two newest messages; at first, of a world that runs
     MotionCodec motion;
-    SequenceTracker numbers;      // of the messages from the line
     std::int64_t seq = 0;         // of the next published message
   };
   using Key = std::pair<std::int32_t, std::int32_t>;  // source and tool

@@ -215,7 +215,7 @@ TEST_CASE("Two hands of one sender keep their own motions") {
   }
 }
 
-TEST_CASE("No message of a hand, with any number or time, stops its motion") {
+TEST_CASE("A message of a hand with a wrong number or time stops its motion for 60 ms at most") {
   using Change = void (*)(header_t&);
   constexpr std::int64_t kLatest_ns = 1'000'000'000'000'000'000;
   const std::array<std::pair<const char*, Change>, 9> changes{{
@@ -249,7 +249,7 @@ TEST_CASE("No message of a hand, with any number or time, stops its motion") {
           std::vector<tool_state_t> messages{at(ms)};
           if (ms == 300) {
             tool_state_t wrong = at(ms);
-            ++wrong.header.seq;
+            wrong.header.seq = on_line ? line.packets : wrong.header.seq + 1;  // the next number
             change(wrong.header);
             if (on_line)
               line.there.on_line_message(0, *parse_line_datagram(line_datagram({channels::kToolState, encode(wrong)}, false)), motion_ms(ms));
@@ -258,10 +258,10 @@ TEST_CASE("No message of a hand, with any number or time, stops its motion") {
           }
           const auto published = line.step(ms, messages);
           unpublished += published.empty();
-          if (ms < 300 + 3 * 20 + 5 || published.empty()) continue;  // three contradictions, and the next packet
+          if (ms < 300 + 3 * 20 + 5 || published.empty()) continue;  // numbers that are used twice, and the next packet
           CHECK(apart(published.back(), at(ms)) < (moves ? 0.3 : 1e-9));
         }
-        CHECK(unpublished == 0);
+        CHECK(unpublished <= 3 * 20);
       }
 }
 
