@@ -114,8 +114,7 @@ bool read_auto(const LoadContext& context, const sdf::Element& link, const sdf::
 }
 
 bool is_automatic(const sdf::Element* inertial) {
-  const std::string_view value = inertial ? inertial->value("auto") : std::string_view();
-  return value == "true" || value == "1";
+  return inertial && sdf::attribute_flag(*inertial, "auto");
 }
 
 void warn_of_densities(const LoadContext& context, const sdf::Element& link, const sdf::Element* inertial) {

@@ -62,6 +62,9 @@ bool may_repeat(std::string_view name) { return kSeveral.contains(name) || name.
 // Fixed step and rate of the simulation: one step per haptic tick.
 constexpr double kStep_s = 0.001, kRate_Hz = 1000;
 
+// The shapes of a geometry: it has one.
+const Names kShapesOfGeometry{"empty", "box", "sphere", "cylinder", "capsule", "plane", "mesh", "heightmap"};
+
 const Names* children_of(std::string_view parent, std::string_view name) {
   auto entry = kSupported.find(std::string(parent) + "/" + std::string(name));
   if (entry == kSupported.end()) entry = kSupported.find(name);
@@ -83,6 +86,7 @@ void check_pace(const LoadContext& context, const sdf::Element& e) {
 
 void walk(const LoadContext& context, const sdf::Element& element, const Names& supported) {
   Names seen;
+  int shapes = 0;
   for (const sdf::Element& child : element.children()) {
     if (&child == context.camera_sensor) continue;
     if (element.name == "world" && is_setting_element(child.name)) continue;  // handled by tactus_settings.h
@@ -90,7 +94,9 @@ void walk(const LoadContext& context, const sdf::Element& element, const Names& 
       if (!harmless(child)) context.warn(child, "is not supported and has no effect");
       continue;
     }
-    if (!may_repeat(child.name) && !seen.emplace(child.name).second)
+    if (element.name == "geometry" && kShapesOfGeometry.contains(child.name)) {
+      if (++shapes == 2) context.warn(element, "has several shapes, of which one counts: give each a <" + std::string(element.parent->name) + "> of its own");
+    } else if (!may_repeat(child.name) && !seen.emplace(child.name).second)
       context.warn(child, "is a second <" + std::string(child.name) + "> and has no effect");
     if (element.name == "physics") check_pace(context, child);
     if (const Names* next = children_of(element.name, child.name)) walk(context, child, *next);

@@ -11,9 +11,11 @@
 namespace tactus::sim::sdf {
 namespace {
 
-bool is_true(const char* text) {
-  const std::string_view value = text ? trimmed(text) : std::string_view();
-  return value == "true" || value == "1";
+bool merge_of(const tinyxml2::XMLElement& xml, const std::string& here) {
+  const char* const given = xml.Attribute("merge");
+  const auto merged = given ? parse_flag(trimmed(given)) : false;
+  if (!merged) throw std::runtime_error(here + ": <include> has merge=\"" + given + "\": it must be true or false");
+  return *merged;
 }
 
 // The first <model>, else <light>, else <actor>; nullptr: none.
@@ -59,7 +61,7 @@ void Tree::include(const tinyxml2::XMLElement& xml, const Source& source, Elemen
   if (!document) return;  // skipped with a warning, or inside an element of another program
   const std::string here = where(source, xml.GetLineNum());
   const tinyxml2::XMLElement& root = *document->xml->RootElement();
-  const bool merged = is_true(xml.Attribute("merge"));
+  const bool merged = merge_of(xml, here);
   if (const auto* world = root.FirstChildElement("world"); world && merged && parent.name == "world")
     return merge_world(*world, document->source, parent);
   const tinyxml2::XMLElement* content = content_of(root);

@@ -65,12 +65,6 @@ bool same_word(std::string_view text, std::string_view word) {
   });
 }
 
-std::optional<bool> parse_flag(std::string_view text) {
-  if (text == "1" || same_word(text, "true")) return true;
-  if (text == "0" || same_word(text, "false")) return false;
-  return std::nullopt;
-}
-
 Pose pose_of_quaternion(const Element& pose, const std::array<double, 7>& v) {
   Rotation q{v[6], v[3], v[4], v[5]};
   const double norm = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
@@ -98,9 +92,21 @@ double child_number(const Element* element, std::string_view child_name, double 
   return child ? number(*child) : missing;
 }
 
+std::optional<bool> parse_flag(std::string_view text) {
+  if (text == "1" || same_word(text, "true")) return true;
+  if (text == "0" || same_word(text, "false")) return false;
+  return std::nullopt;
+}
+
 bool flag(const Element& element) {
   const auto value = parse_flag(element.text);
   if (!value) reject_value(element, "must be true or false");
+  return *value;
+}
+
+bool attribute_flag(const Element& element, std::string_view name) {
+  const auto value = parse_flag(trimmed(element.value(name, "false")));
+  if (!value) reject(element, "has " + std::string(name) + "=" + quoted(element.value(name)) + ": it must be true or false");
   return *value;
 }
 
@@ -133,16 +139,15 @@ std::optional<Colour> child_colour(const Element* element, std::string_view chil
 
 Pose raw_pose(const Element& pose) {
   const std::string_view format = pose.value("rotation_format", "euler_rpy");
-  const auto degrees = parse_flag(pose.value("degrees", "false"));
-  if (!degrees) reject(pose, "has degrees=" + quoted(pose.value("degrees")) + ": it must be true or false");
+  const bool degrees = attribute_flag(pose, "degrees");
   if (format != "euler_rpy" && format != "quat_xyzw")
     reject(pose, "has rotation_format=" + quoted(format) + ": it must be euler_rpy or quat_xyzw");
-  if (format == "quat_xyzw" && *degrees) reject(pose, "has degrees for a quaternion: remove degrees");
+  if (format == "quat_xyzw" && degrees) reject(pose, "has degrees for a quaternion: remove degrees");
   if (pose.text.empty()) return {};
   if (format == "quat_xyzw") return pose_of_quaternion(pose, exactly<7>(pose));
   const auto v = exactly<6>(pose);
   // As IGN_DTOR: the product first.
-  const auto rad = [&](double angle) { return *degrees ? angle * std::numbers::pi / 180 : angle; };
+  const auto rad = [&](double angle) { return degrees ? angle * std::numbers::pi / 180 : angle; };
   return {{v[0], v[1], v[2]}, Rotation::from_euler(rad(v[3]), rad(v[4]), rad(v[5]))};
 }
 

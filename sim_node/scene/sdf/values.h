@@ -16,8 +16,11 @@ double number(const Element& element);
 double number_or_infinity(const Element& element);
 // The number in a child; `missing` when there is no such child, or no element.
 double child_number(const Element* element, std::string_view child_name, double missing);
-// true, false, 1 or 0, in any case of letters.
+// true, false, 1 or 0, in any case of letters; nullopt: another text.
+std::optional<bool> parse_flag(std::string_view text);
 bool flag(const Element& element);
+// Of an attribute; false without it.
+bool attribute_flag(const Element& element, std::string_view name);
 bool child_flag(const Element* element, std::string_view child_name, bool missing);
 // Exactly two or three numbers.
 Eigen::Vector2d vector2(const Element& element);

@@ -51,6 +51,14 @@ TEST_CASE("Unsupported elements with their default values cause no warning") {
             .empty());
 }
 
+TEST_CASE("A geometry of several shapes, of which one counts, causes one warning with its line") {
+  const auto w = warnings(R"(<model name="m"><link name="l">
+<collision name="c"><geometry><sphere><radius>1</radius></sphere><box><size>1 1 1</size></box><empty/></geometry></collision>
+<visual name="v"><geometry><box><size>1 1 1</size></box></geometry></visual></link></model>)");
+  REQUIRE(w.size() == 1);
+  CHECK_THAT(w[0], Catch::StartsWith("scene.sdf:4: ") && Catch::EndsWith("has several shapes, of which one counts: give each a <collision> of its own"));
+}
+
 TEST_CASE("A second element of which only the first one counts causes one warning with its line") {
   const auto w = warnings(R"(<gravity>0 0 -1</gravity>
 <gravity>0 0 nan</gravity>

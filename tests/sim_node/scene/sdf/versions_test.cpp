@@ -95,6 +95,28 @@ TEST_CASE("An automatic inertia comes from the density of the collision, the lin
   CHECK_THAT(bad.load_error(), Catch::StartsWith("scene.sdf:4: ") && Catch::Contains("density"));
 }
 
+TEST_CASE("Flags in attributes have any case of letters, and another word is refused with its line") {
+  const auto scene = [](const std::string& automatic, const std::string& merged, const std::string& degrees) {
+    SceneFile file(world("<model name='m'>\n<link name='l'><inertial auto='" + automatic + "'/>" + collision("<box><size>1 1 1</size></box>") +
+                         "</link>\n<include merge='" + merged + "'><uri>tower.sdf</uri></include>\n<link name='k'><pose degrees='" + degrees + "'>0 0 0 0 0 180</pose></link></model>"));
+    file.write("tower.sdf", "<sdf version='1.9'><model name='t'><link name='base'/></model></sdf>");
+    return std::pair(file.load_error(), file.load_error().empty() ? file.load() : WorldDef{});
+  };
+  for (const char* yes : {"true", "True", "TRUE", "1", " true "}) {
+    INFO(yes);
+    const auto [error, w] = scene(yes, yes, yes);
+    REQUIRE(error.empty());
+    CHECK(w.bodies[0].mass_kg == Approx(1000));  // of water, not SDF's 1 kg
+    CHECK(w.bodies[1].name == "m::base");
+    CHECK(w.bodies[2].pose.linear()(0, 0) == Approx(-1));
+  }
+  REQUIRE(scene("False", "1", "FALSE").second.bodies.size() == 3);
+  CHECK(scene("False", "1", "FALSE").second.bodies[0].mass_kg == Approx(1));
+  CHECK_THAT(scene("yes", "1", "1").first, Catch::Contains("scene.sdf:4: ") && Catch::Contains("has auto=\"yes\": it must be true or false"));
+  CHECK_THAT(scene("1", "maybe", "1").first, Catch::Contains("scene.sdf:5: ") && Catch::Contains("has merge=\"maybe\": it must be true or false"));
+  CHECK_THAT(scene("1", "1", "on").first, Catch::Contains("scene.sdf:6: ") && Catch::Contains("has degrees=\"on\": it must be true or false"));
+}
+
 TEST_CASE("A density without an automatic inertia is a warning") {
   SceneFile file(world("<model name='m'><link name='l'><inertial>\n<density>10</density></inertial></link></model>"));
   file.load();
