@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 
-#include "scripts/simulated_player/observer/checks/checks.h"
 #include "scripts/simulated_player/observer/population.h"
 
 namespace tactus::simulated_player {
@@ -21,7 +20,7 @@ const std::vector<int>& Admission::failed(const PlayerChoice& choice, std::uint6
   const auto key = std::make_pair(choice.number, population);
   if (const auto at = known.find(key); at != known.end()) return at->second;
   const observer::PlayerParameters player = observer::player_of(static_cast<std::uint32_t>(choice.number), population);
-  return known[key] = observer::failing_checks(player, population, policy == CheckPolicy::kRequire);
+  return known[key] = checks_(player, population, policy == CheckPolicy::kRequire);
 }
 
 const std::vector<int>& Admission::admit(const PlayerChoice& choice, std::uint64_t population, CheckPolicy policy) {

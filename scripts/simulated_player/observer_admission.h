@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scripts/simulated_player/observer/checks/checks.h"
 #include "scripts/simulated_player/player_choice.h"
 
 namespace tactus::simulated_player {
@@ -22,6 +24,11 @@ CheckPolicy check_policy(const std::string& word);
 // The results of the players so far: a check takes seconds.
 class Admission {
  public:
+  // Numbers of the checks that a player fails with this seed, or only of the first one.
+  using Checks = std::function<std::vector<int>(const observer::PlayerParameters&, std::uint64_t seed, bool first_only)>;
+  // checks: in place of observer::failing_checks, for tests.
+  explicit Admission(Checks checks = observer::failing_checks) : checks_(std::move(checks)) {}
+
   // Numbers of the checks that this player fails, with the population's seed for the experiments; empty: it may be asked. Only
   // the first failed one under kRequire. Under kSkip, for stage_model and for the typical person, whose checks are tests of the
   // library, no check is run.
@@ -30,6 +37,7 @@ class Admission {
   const std::vector<int>& admit(const PlayerChoice& choice, std::uint64_t population, CheckPolicy policy);
 
  private:
+  Checks checks_;
   std::map<std::pair<std::int64_t, std::uint64_t>, std::vector<int>> first_, all_;  // by number and population
 };
 

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
+#include <vector>
 
-#include "scripts/simulated_player/observer/checks/checks.h"
 #include "scripts/simulated_player/observer/population.h"
 
 using namespace tactus;
@@ -11,31 +11,31 @@ using namespace tactus::simulated_player;
 
 namespace {
 
-// The first player that fails the check of reaction times, which takes no time.
-PlayerChoice slow_to_react(std::uint64_t population) {
-  for (std::uint32_t number = 0; number < 4096; ++number) {
-    bool passed = true;
-    for (const auto& result : observer::run_check(4, observer::player_of(number, population), population)) passed = passed && result.passed();
-    if (!passed) return player_choice("observer:" + std::to_string(number));
-  }
-  throw std::logic_error("no player fails check 4");
+// Checks of which this player of the population fails two, and every other player none.
+Admission::Checks fails(std::uint32_t number, std::uint64_t population) {
+  return [=](const observer::PlayerParameters& player, std::uint64_t seed, bool first_only) -> std::vector<int> {
+    if (seed != population || player.caution != observer::player_of(number, population).caution) return {};
+    return first_only ? std::vector{4} : std::vector{2, 4};
+  };
 }
 
 }  // namespace
 
 TEST_CASE("A player of the population that fails a check is not asked, with one sentence that names player and check") {
-  const PlayerChoice choice = slow_to_react(1);
-  Admission admission;
+  const PlayerChoice choice = player_choice("observer:12");
+  Admission admission(fails(12, 1));
   CHECK_THROWS_WITH(admission.admit(choice, 1, CheckPolicy::kRequire),
                     Catch::Contains("observer:" + std::to_string(choice.number) + " of population 1 fails the check 4") && Catch::Contains("--checks count"));
   CHECK(admission.failed(choice, 1, CheckPolicy::kRequire) == std::vector<int>{4});
+  CHECK(admission.admit(choice, 1, CheckPolicy::kCount) == std::vector<int>{2, 4});
+  CHECK(admission.admit(player_choice("observer:13"), 1, CheckPolicy::kRequire).empty());
 }
 
 TEST_CASE("Players of fixed rules and the typical person play without checks, as does a player whom the caller has checked") {
-  Admission admission;
+  Admission admission([](const observer::PlayerParameters&, std::uint64_t, bool) -> std::vector<int> { throw std::logic_error("a check ran"); });
   CHECK(admission.admit(player_choice("stage_model"), 1, CheckPolicy::kRequire).empty());
   CHECK(admission.admit(player_choice("observer"), 1, CheckPolicy::kRequire).empty());
-  CHECK(admission.admit(slow_to_react(1), 1, CheckPolicy::kSkip).empty());
+  CHECK(admission.admit(player_choice("observer:12"), 1, CheckPolicy::kSkip).empty());
 }
 
 TEST_CASE("The rule for failed checks is one of three words") {

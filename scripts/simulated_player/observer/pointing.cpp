@@ -20,7 +20,6 @@ constexpr double kViewing_m = 0.6;
 // order).
 constexpr double kJudgedDelaySd_s = 0.02;
 constexpr double kErrorCost_s = 2.5;    // time that the typical player gives to avoid an error (design)
-constexpr double kConsidered_s = 0.05;  // the player compares selecting now with selecting this much later
 // Growth of the approach's time constant for each second of noticed mismatch: between e, which damps a loop with
 // that delay critically, and 1 + e, which also makes up for the faster approach that the mismatch causes (design).
 constexpr double kSlowing = 3.2;
@@ -44,11 +43,44 @@ HandModel believed_model(const PlayerParameters& player, const Hand& hand) {
 
 double tail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
 
+// Variance of the place at which the button goes down, one muscle time after the decision.
+double pressed_variance_m2(const PlayerParameters& player, const Matrix& covariance) {
+  const double press_s = player.muscle_s;
+  return covariance(kPlace, kPlace) + 2 * press_s * covariance(kPlace, kSpeed) +
+         press_s * press_s * covariance(kSpeed, kSpeed);
+}
+
+// Standard deviation of one picture of a gap, and of one percept of the body.
+double picture_sd_m(const PlayerParameters& player, double gap_m) {
+  return seen_gap_sd_m(player, kViewing_m, gap_m) * std::sqrt(kLook_s / (kFrameSteps * kStep_s));
+}
+double body_sd_m(const PlayerParameters& player) {
+  return player.proprioceptive_sd_m * std::sqrt(kLook_s / (kTouchSteps * kStep_s));
+}
+
+}  // namespace
+
+double error_cost_s(const PlayerParameters& player) { return kErrorCost_s * player.caution; }
+
 double miss_probability(double place_m, double sd_m, double width_m) {
   return tail((width_m / 2 - place_m) / sd_m) + tail((width_m / 2 + place_m) / sd_m);
 }
 
-}  // namespace
+double settled_sd_m(const PlayerParameters& player, double believed_age_s) {
+  constexpr double kRest_s = 1.5;  // several times the largest age, until the covariance is constant
+  Matrix start = Matrix::Identity(kHandStates + 1, kHandStates + 1) * 1e-8;
+  start(kBias, kBias) = player.proprioceptive_bias_m * player.proprioceptive_bias_m;
+  DelayedKalman estimate(believed_model(player, Hand(player, kStep_s, 0)), Vector::Zero(kHandStates + 1), start);
+  Vector seen = Vector::Zero(kHandStates + 1), felt = seen;
+  seen[kPlace] = felt[kPlace] = felt[kBias] = 1;
+  const double seen_m = picture_sd_m(player, 0), felt_m = body_sd_m(player);
+  for (int i = 0; i < kRest_s / kStep_s; ++i) {
+    if (i % kFrameSteps == 0) estimate.measure(believed_age_s, seen, 0, seen_m * seen_m);
+    if (i % kTouchSteps == 0) estimate.measure(player.touch_latency_s, felt, 0, felt_m * felt_m);
+    estimate.predict(0);
+  }
+  return std::sqrt(std::max(pressed_variance_m2(player, estimate.covariance()), 1e-12));
+}
 
 double target_width_m(double distance_m, double difficulty_bit) {
   return distance_m / (std::exp2(difficulty_bit) - 1);
@@ -140,8 +172,7 @@ class PointingMovement {
   void show(int step, NoiseStream& noise) {
     if (step % kFrameSteps != 0) return;
     const double place_m = hand_.state()[kPlace];
-    const double sd =
-        seen_gap_sd_m(s_.player_, kViewing_m, std::abs(place_m)) * std::sqrt(kLook_s / (kFrameSteps * kStep_s));
+    const double sd = picture_sd_m(s_.player_, std::abs(place_m));
     const double off = noise.normal(sd), jitter = s_.def_.jitter_s * (2 * noise.uniform() - 1);
     const bool attended = noise.uniform() >= s_.player_.lapse;
     if (attended && s_.def_.vision)
@@ -151,7 +182,7 @@ class PointingMovement {
   // The body senses the place of the hand.
   void feel(int step) {
     if (step % kTouchSteps != 0) return;
-    const double sd = s_.player_.proprioceptive_sd_m * std::sqrt(kLook_s / (kTouchSteps * kStep_s));
+    const double sd = body_sd_m(s_.player_);
     body_.present(step * kStep_s, Eigen::Vector3d(hand_.state()[kPlace] + bias_m_ + body_noise_.normal(sd), 0, 0),
                   sd);
   }
@@ -196,16 +227,13 @@ class PointingMovement {
                        now_s_ - rest_s_ > s_.belief_.believed_s() + s_.belief_.noticed_s() + kLook_s / 2))
       return false;
     const Vector pressed = press_ * x;
-    const double press_s = s_.player_.muscle_s;
-    const Matrix& p = estimate_.covariance();
-    const double variance =
-        p(kPlace, kPlace) + 2 * press_s * p(kPlace, kSpeed) + press_s * press_s * p(kSpeed, kSpeed);
+    const double variance = pressed_variance_m2(s_.player_, estimate_.covariance());
     // The noticed mismatch of the delay makes a moving hand uncertain.
     const double mismatch = x[kSpeed] * s_.belief_.noticed_s();
     const double sd = std::sqrt(std::max(variance, 1e-12) + mismatch * mismatch);
     const double now = miss_probability(pressed[kPlace], sd, width_m_),
                  then = miss_probability(Vector(later_ * pressed)[kPlace], sd, width_m_);
-    return now < 0.5 && kErrorCost_s * s_.player_.caution * (now - then) <= kConsidered_s;
+    return now < 0.5 && error_cost_s(s_.player_) * (now - then) <= kConsidered_s;
   }
 
   const PointingSession& s_;

@@ -39,6 +39,17 @@ struct PointingTrial {
 // Width of the target for this index of difficulty, log2(D/W + 1).
 double target_width_m(double distance_m, double difficulty_bit);
 
+// Time that a player gives to avoid an error, s: the cost of an error (design), times the player's caution.
+double error_cost_s(const PlayerParameters& player);
+// The player compares selecting now with selecting this much later (design).
+inline constexpr double kConsidered_s = 0.05;
+// Probability that a hand at this place, known with this standard deviation, is outside a target of this width.
+double miss_probability(double place_m, double sd_m, double width_m);
+
+// Standard deviation of the believed place of a hand that rests at its target, when the picture is believed to have
+// this age, m.
+double settled_sd_m(const PlayerParameters& player, double believed_age_s);
+
 class PointingSession {
  public:
   PointingSession(const PlayerParameters& player, const PointingDef& def, std::uint64_t seed);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scripts/simulated_player/observer/checks/checks.h"
+#include "scripts/simulated_player/observer/checks/expected.h"
 #include "scripts/simulated_player/observer/checks/psychometric.h"
 #include "scripts/simulated_player/observer/cue_combination.h"
 #include "scripts/simulated_player/observer/delay_belief.h"
@@ -107,8 +108,6 @@ std::vector<CheckResult> check_size(const PlayerParameters& player, std::uint64_
 
 std::vector<CheckResult> check_ventriloquism(const PlayerParameters& player, std::uint64_t seed,
                                              const CheckEffort& effort) {
-  // Standard deviation of the places of causes: Koerding et al. 2007 (12.3 degrees, unverified).
-  constexpr double kPlaces_deg = 12.3;
   NoiseStream noise(seed, kVentriloquismStream);
   const int trials = trials_of(2000, effort);
   const double va = player.azimuth_sd_deg * player.azimuth_sd_deg,
@@ -119,15 +118,16 @@ std::vector<CheckResult> check_ventriloquism(const PlayerParameters& player, std
     for (int i = 0; i < trials; ++i) {
       const double sound = -disparity / 2 + noise.normal(player.azimuth_sd_deg),
                    sight = disparity / 2 + noise.normal(player.visual_sd_deg);
-      const double alone = sound / va / (1 / va + 1 / (kPlaces_deg * kPlaces_deg));
-      bias += (infer_cause({sound, va}, {sight, vv}, kPlaces_deg * kPlaces_deg, player.common_cause).a - alone) /
+      const double alone = sound / va / (1 / va + 1 / (kPlacesOfCauses_deg * kPlacesOfCauses_deg));
+      bias += (infer_cause({sound, va}, {sight, vv}, kPlacesOfCauses_deg * kPlacesOfCauses_deg, player.common_cause).a - alone) /
               trials;
     }
     if (bias > peak_bias) peak_bias = bias, peak_deg = disparity;
   }
   const char* source = "Koerding, Beierholm, Ma, Quartz, Tenenbaum and Shams 2007, PLoS ONE 2:e943";
-  return {{7, "disparity of the largest shift of a sound", "degree", peak_deg, 5, 15, "rises, then falls", source,
-           Evidence::kVerified},
+  const double wider = expected_peak_deg(player) / expected_peak_deg({});
+  return {{7, "disparity of the largest shift of a sound", "degree", peak_deg, 5 * wider, 15 * wider,
+           "rises, then falls", source, Evidence::kVerified},
           {7, "shift at 30 degrees against the largest", "1", bias / peak_bias, 0, 0.8, "falls", source,
            Evidence::kVerified}};
 }
@@ -200,7 +200,8 @@ std::vector<CheckResult> check_recalibration(const PlayerParameters& player, std
   constexpr int kBlocks = 12;
   for (std::uint64_t block = 0; block < kBlocks; ++block)
     shift_ms += 1e3 * (equality_s(kAdded_s, 2 * block) - equality_s(0, 2 * block + 1)) / kBlocks;
-  return {{9, "shift of simultaneity after 60 taps with 100 ms", "ms", shift_ms, 10, 35, "about 20",
+  const double larger = expected_recalibration_s(player) / expected_recalibration_s({});
+  return {{9, "shift of simultaneity after 60 taps with 100 ms", "ms", shift_ms, 10 * larger, 35 * larger, "about 20",
            "Sugano, Keetels and Vroomen 2012, Frontiers in Psychology 3:246", Evidence::kVerified}};
 }
 

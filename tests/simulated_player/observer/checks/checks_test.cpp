@@ -87,6 +87,21 @@ TEST_CASE("A player that is not like people fails the check of that property") {
   CHECK(failed(check_pointing(player, kSeed, {.share = 0.1})));
 }
 
+TEST_CASE("A person is compared with the law for her own latencies, ears and adaptation, not with the mean of a group") {
+  PlayerParameters player;
+  player.visual_latency_s = 0.165, player.touch_latency_s = 0.088;
+  CHECK_FALSE(failed(run_check(4, player, kSeed)));
+  player = {};
+  player.motor_noise_share = 0.04;
+  CHECK_FALSE(failed(run_check(5, player, kSeed)));
+  player = {};
+  player.azimuth_sd_deg = 2.2;
+  CHECK_FALSE(failed(run_check(7, player, kSeed)));
+  player = {};
+  player.perceptual_adaptation = 0.11, player.adaptation_rate = 0.025;
+  CHECK_FALSE(failed(run_check(9, player, kSeed)));
+}
+
 TEST_CASE("A player that fails a check is refused with the number of the check") {
   PlayerParameters player;
   player.touch_latency_s = 0.2;
