@@ -35,13 +35,18 @@ SequenceStatus SequenceTracker::observe(const header_t& h) {
     if (h.publish_time_ns > s.publish_ns) {
       if (++s.contradictions >= kMaxContradictions) return restart(SequenceStatus::kNewEpoch);
     } else {
-      gaps_ -= static_cast<std::int64_t>(s.missing.erase(h.seq));
+      const std::int64_t behind = s.seq - 1 - h.seq;
+      if (behind >= 0 && behind < kRemembered && s.missing[static_cast<std::size_t>(behind)]) {
+        s.missing.reset(static_cast<std::size_t>(behind));
+        --gaps_;
+      }
     }
     return SequenceStatus::kOld;
   }
   gaps_ += h.seq - s.seq - 1;
-  for (std::int64_t seq = std::max(s.seq + 1, h.seq - kRemembered); seq < h.seq; ++seq) s.missing.insert(seq);
-  while (static_cast<std::int64_t>(s.missing.size()) > kRemembered) s.missing.erase(s.missing.begin());
+  const std::int64_t skipped = std::min(h.seq - s.seq - 1, kRemembered);
+  s.missing <<= static_cast<std::size_t>(skipped + 1);
+  s.missing |= ~std::bitset<kRemembered>() >> static_cast<std::size_t>(kRemembered - skipped);
   s.seq = h.seq;
   s.publish_ns = h.publish_time_ns;
   s.contradictions = 0;

@@ -1,9 +1,9 @@
 // Counts missing messages of a channel by sequence number, and distinguishes restarts of a sender from losses.
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <tactus/header_t.hpp>
 
 namespace tactus::sync {
@@ -26,6 +26,9 @@ class SequenceTracker {
   // newer stamp than the newest message, the number of that message was wrong.
   static constexpr int kMaxContradictions = 3;
   static constexpr std::size_t kMaxSenders = 256;
+  // A late message no longer corrects the count when this number of newer ones has been sent: 1 s at 1 kHz. The memory of a
+  // sender does not depend on what it sends.
+  static constexpr std::int64_t kRemembered = 1024;
 
   SequenceStatus observe(const header_t& header);
   std::int64_t gaps() const { return gaps_; }
@@ -38,13 +41,11 @@ class SequenceTracker {
     std::int64_t incarnation = 0;
     std::int64_t seq = 0;
     std::int64_t publish_ns = 0;
-    std::set<std::int64_t>
-        missing{};  // the newest kRemembered missing numbers; a late message removes its number
+    std::bitset<kRemembered> missing{};  // bit i: the number seq - 1 - i is missing; a late message clears its bit
     int contradictions = 0;
     std::int64_t last_message = 0;  // messages_ at its newest message
   };
   Sender& find_or_add(std::int32_t source);
-  static constexpr std::int64_t kRemembered = 256;
   std::map<std::int32_t, Sender> senders_;
   std::int64_t gaps_ = 0;
   std::int64_t messages_ = 0;

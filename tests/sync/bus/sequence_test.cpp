@@ -138,3 +138,28 @@ TEST_CASE("Gaps equal the lost messages for any reordering and repetition") {
     REQUIRE(t.gaps() == static_cast<std::int64_t>(lost.size()));
   }
 }
+
+TEST_CASE("A late message closes a gap among the newest numbers, and no older one") {
+  std::mt19937 random(5);
+  const auto below = [&](std::int64_t n) { return static_cast<std::int64_t>(random() % static_cast<unsigned>(n)); };
+  for (int trial = 0; trial < 50; ++trial) {
+    SequenceTracker t;
+    std::set<std::int64_t> missing;  // all of the sender
+    std::int64_t newest = 0, gaps = 0;
+    t.observe(message(newest, 0));
+    for (int i = 0; i < 400; ++i) {
+      if (random() % 2 == 0) {
+        const std::int64_t next = newest + 1 + below(random() % 8 == 0 ? 3000 : 4);
+        for (std::int64_t seq = newest + 1; seq < next; ++seq) missing.insert(seq), ++gaps;
+        newest = next;
+        t.observe(message(newest, 0));
+      } else {
+        const std::int64_t late = newest - below(2 * SequenceTracker::kRemembered);
+        const bool remembered = newest - late <= SequenceTracker::kRemembered;
+        if (missing.erase(late) > 0 && remembered) --gaps;
+        REQUIRE(t.observe(message(late, 0)) == SequenceStatus::kOld);
+      }
+      REQUIRE(t.gaps() == gaps);
+    }
+  }
+}
