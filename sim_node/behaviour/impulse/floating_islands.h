@@ -15,8 +15,9 @@ class FloatingIslands {
   // A displaced body. World axes.
   struct Body {
     double mass_kg = 0;
-    Eigen::Matrix3d inertia_kg_m2;
-    Eigen::Vector3d centre_m, lost_kg_m2_s;  // lost: angular momentum that the displacement took
+    Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d lost_kg_m2_s = Eigen::Vector3d::Zero();  // angular momentum that the displacement took
     Eigen::Vector3d *velocity_m_s = nullptr, *spin_rad_s = nullptr;  // get the common rotation rate
   };
 
