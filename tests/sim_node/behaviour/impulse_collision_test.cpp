@@ -105,7 +105,7 @@ TEST_CASE("A ball that meets two planes in one step rebounds from them in the or
   std::mt19937 random(11);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   int slower_first = 0;
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; trial < 600; ++trial) {
     const double turn = draw(0.6, 2.4), h = 0.001, r = 0.02;
     const Vector3d normals[2] = {{0, 0, 1}, {std::sin(turn), 0, std::cos(turn)}};
     Toys toys;
