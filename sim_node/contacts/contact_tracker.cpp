@@ -205,6 +205,8 @@ void ContactTracker::update_pair(const LiveContact* before, const Manifold* near
     if (!before) c.position_m = i.position_m;
     take_points(*struck, [](const ManifoldPoint& p) { return p.normal_force_N > 0; }, c.manifold);
     c.a_body_m = i.a_body_m, c.b_body_m = i.b_body_m;
+    // The solver reports each impact once, also those of a body that rattles and never stays slow for a step.
+    c.armed = true;
     begin_or_hit(c, !before, now_ - step_ + sync::from_seconds(i.first_s), i.speed_m_s, [&] { return approach(c.manifold, i); });
   }
   if (touches) {

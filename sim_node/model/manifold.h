@@ -17,15 +17,15 @@ struct ManifoldPoint {
   double friction = 1;                                // factor on the friction of the pair, from friction maps
 };
 
-// Impacts of a pair of shapes within a step, as the solver reports them.
+// Impacts of a pair of shapes within a step, as the solver reports them: the fastest one, and their number.
 struct Impact {
   int count = 0;                   // 0: no impact within the step; the other members are then undefined
-  double first_s = 0, last_s = 0;  // times of the first and the last impact, from the start of the step
-  double speed_m_s = 0;            // closing speed before the first impact
-  double effective_mass_kg = 0;    // at the first impact, joints included
-  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  // of the first impact, world
+  double first_s = 0, last_s = 0;  // times of the fastest and the last impact, from the start of the step
+  double speed_m_s = 0;            // closing speed before the fastest impact
+  double effective_mass_kg = 0;    // at the fastest impact, joints included
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  // of the fastest impact, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, world, from a to b
-  // Positions of the first impact in the frames of the bodies at the start of the step (of its last part, if it was
+  // Positions of the fastest impact in the frames of the bodies at the start of the step (of its last part, if it was
   // divided). In an impulse world: from the centres of mass, with the rotation since the start
   // (impulse/body_frames.h).
   Eigen::Vector3d a_body_m = Eigen::Vector3d::Zero(), b_body_m = Eigen::Vector3d::Zero();

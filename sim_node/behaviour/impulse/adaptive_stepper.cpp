@@ -202,8 +202,12 @@ void AdaptiveStepper::merge_substep(std::vector<Manifold>& solved, std::span<con
     if (impact.count == 0) {
       impact = out.impact;
     } else if (out.impact.count > 0) {
-      impact.count += out.impact.count;
-      impact.last_s = out.impact.last_s;
+      // The fastest impact of the step.
+      const int count = impact.count + out.impact.count;
+      const double last = out.impact.last_s;
+      if (out.impact.speed_m_s > impact.speed_m_s) impact = out.impact;
+      impact.count = count;
+      impact.last_s = last;
     }
     if (before > now) out = *old;
     if (std::max(before, now) > 0)

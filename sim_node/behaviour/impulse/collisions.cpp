@@ -18,6 +18,8 @@ constexpr std::size_t kMaxImpacts = 16;
 constexpr double kTouching_m = 2e-6;
 // Points whose normals are within 30 degrees belong to one face. Cosine.
 constexpr double kSameImpactFace = 0.866;
+// Impacts within this share of a step happen at the same time: rounding of gaps.
+constexpr double kSameTime = 1e-6;
 // Rounding of an energy, as a share of the energies that impulses take and return.
 constexpr double kRounding = 1e-12;
 
@@ -79,9 +81,10 @@ bool Collisions::will_collide(const ContactPoint& p, PredictedImpact& out) const
   return out.speed_m_s > limits_.bounce_speed_m_s + 2 * std::max(std::abs(drift), std::abs(drift + bend / h_));
 }
 
-double Collisions::approach(const ContactGroup& g) const {
-  if (g.spring_only) return 0;
-  double fastest = 0, on_new_face = 0;
+// The speed is 0 when the pair does not collide. The time is that of its first point.
+Collisions::PredictedImpact Collisions::approach(const ContactGroup& g) const {
+  if (g.spring_only) return {};
+  double fastest = 0, on_new_face = 0, first = h_;
   bool overlaps = false;
   const auto points = std::span(rows_->points).subspan(static_cast<std::size_t>(g.first), static_cast<std::size_t>(g.count));
   for (const ContactPoint& p : points) {
@@ -89,15 +92,16 @@ double Collisions::approach(const ContactGroup& g) const {
     overlaps |= p.gap_m < 0;
     if (!will_collide(p, m)) continue;
     fastest = std::max(fastest, m.speed_m_s);
+    first = std::min(first, m.time_s);
     const bool known = g.impacts > 0 && std::any_of(points.begin(), points.end(), [&](const ContactPoint& q) {
       return q.impact_N_s > 0 && q.axes.row(0).dot(p.axes.row(0)) > kSameImpactFace;
     });
     if (!known) on_new_face = std::max(on_new_face, m.speed_m_s);
   }
-  if (g.restitution > 0 || overlaps) return fastest;
+  if (g.restitution > 0 || overlaps) return {first, fastest};
   // Joints get no offset. In front of them the contact solver lets the gap close to zero.
   const int twists = static_cast<int>(velocity_->twists.size());
-  return g.mover_a < twists && g.mover_b < twists ? on_new_face : 0;
+  return {first, g.mover_a < twists && g.mover_b < twists ? on_new_face : 0};
 }
 
 // Predicts the meeting of a pair without impact from its free motion, when its gap is open.
@@ -326,6 +330,24 @@ void Collisions::report_impact(ContactGroup& g, double t, int struck, const std:
   g.speed_m_s = speed;
 }
 
+// The next pair to collide: the one that meets first, and of those that meet at the same time the fastest. An impact that is
+// resolved after a later one of the same body would happen on a path that the body has not taken, and could add energy.
+// -1: none.
+int Collisions::next_impact() const {
+  int next = -1;
+  for (std::size_t i = 0; i < approach_.size(); ++i) {
+    const PredictedImpact& m = approach_[i];
+    if (m.speed_m_s <= 0) continue;
+    if (next >= 0) {
+      const PredictedImpact& best = approach_[static_cast<std::size_t>(next)];
+      const double later = m.time_s - best.time_s;
+      if (later > kSameTime * h_ || (later >= -kSameTime * h_ && m.speed_m_s <= best.speed_m_s)) continue;
+    }
+    next = static_cast<int>(i);
+  }
+  return next;
+}
+
 void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::size_t>& first_rate, const Velocities& drift,
                          Velocities& velocity, Velocities& position_offset) {
   drift_ = &drift;
@@ -338,9 +360,9 @@ void Collisions::resolve(ContactRows& rows, double h, const std::vector<std::siz
   for (std::size_t i = 0; i < rows.groups.size(); ++i) approach_[i] = approach(rows.groups[i]);
   const std::size_t max_impacts = kMaxImpacts * rows.groups.size();
   for (std::size_t n = 0; n < max_impacts; ++n) {
-    const auto fastest = std::max_element(approach_.begin(), approach_.end());
-    if (*fastest <= 0) break;
-    ContactGroup& struck = rows.groups[static_cast<std::size_t>(fastest - approach_.begin())];
+    const int next = next_impact();
+    if (next < 0) break;
+    ContactGroup& struck = rows.groups[static_cast<std::size_t>(next)];
     apply_collision(struck);
     const auto shares = [&](int mover) {
       return mover >= 0 && (mover == struck.mover_a || mover == struck.mover_b);

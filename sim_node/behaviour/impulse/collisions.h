@@ -1,5 +1,5 @@
 // Collisions before contact (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking", section 5):
-// pairs rebound one after the other, fastest approach first, until none approaches. A simultaneous solution would
+// pairs rebound one after the other, in the order of their times, until none approaches. A simultaneous solution would
 // divide an impulse among all touching bodies; a sequential one propagates it, as in Newton's cradle.
 #pragma once
 
@@ -46,7 +46,8 @@ class Collisions {
   };
   bool will_touch(const ContactPoint& p, PredictedImpact& out) const;
   bool will_collide(const ContactPoint& p, PredictedImpact& out) const;
-  double approach(const ContactGroup& g) const;
+  PredictedImpact approach(const ContactGroup& g) const;
+  int next_impact() const;
   void move_to(ContactGroup& g, double time_s);
   void move_back(ContactGroup& g, double time_s);
   using PointImpulses = std::array<Eigen::Vector3d, kMaxManifoldPoints>;
@@ -80,7 +81,7 @@ class Collisions {
   const Velocities* drift_ = nullptr;
   Velocities *velocity_ = nullptr, *position_offset_ = nullptr;
   double h_ = 0;
-  std::vector<double> approach_;  // per group
+  std::vector<PredictedImpact> approach_;  // per group
   std::vector<double> before_;    // velocities of the two movers
   std::array<bool, kMaxManifoldPoints> takes_part_{};  // points of the pair that collide
 };

@@ -10,6 +10,7 @@
 #include "sim_node/behaviour/articulated/articulated_system.h"
 #include "sim_node/behaviour/impulse/collisions.h"
 #include "sim_node/behaviour/impulse/contact_rows.h"
+#include "sim_node/behaviour/impulse/floating_islands.h"
 #include "sim_node/behaviour/impulse/free_body.h"
 #include "sim_node/behaviour/impulse/island_solver.h"
 #include "sim_node/behaviour/impulse/joint_rows.h"
@@ -118,8 +119,9 @@ class World {
   void stop_approach(std::span<const Manifold> contacts, double min_overlap_m,
                      double max_energy_J = std::numeric_limits<double>::max());
   // Resolves overlaps by the smallest displacement that the contacts allow, weighted by inertia. Changes positions
-  // only, not velocities. contacts: of the current poses. Overlaps deeper than max_overlap_m are ignored. Returns the
-  // energy that free bodies gain: by their weight, and by their spin about turned axes of inertia.
+  // only; velocities change by a small common rotation rate, where floating bodies would lose angular momentum. contacts:
+  // of the current poses. Overlaps deeper than max_overlap_m are ignored. Returns the energy that free bodies gain: by their
+  // weight, by their spin about turned axes of inertia, and by that rotation rate.
   double separate(std::span<const Manifold> contacts, double max_overlap_m);
   // Sets the velocities of free bodies in motions() to those at the middle of a step of h_s that ends now. Call it after
   // the last part of a divided step: the velocities belong to the middle of that part.
@@ -172,6 +174,8 @@ class World {
   void write_results(std::span<Manifold> contacts, double h) const;
   void update_inertia(std::span<const Manifold> contacts);
   void limit_stopping(double max_energy_J);
+  double displace_free(int unit);
+  double restore_spin();
   void separate_links(std::size_t system);
   void refresh(System& system);
   int dof_of(int body, int axis) const;
@@ -211,6 +215,8 @@ class World {
   bool has_corrections_ = false;  // of positions, in this step
   std::vector<Manifold> overlapping_;
   std::vector<double> end_gap_m_, lift_;  // per contact point, while positions are corrected
+  FloatingIslands floating_;
+  std::vector<Eigen::Vector3d> lost_kg_m2_s_;  // per twist: angular momentum that a correction of positions took
   Velocities velocity_, drift_, position_offset_;
   Velocities before_contacts_;  // velocities without the impulses of the sweeps
   std::vector<double> scratch_;

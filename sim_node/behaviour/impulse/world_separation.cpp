@@ -17,10 +17,17 @@ constexpr double kStopped_m_s = 1e-9;
 constexpr int kMaxCorrectionSweeps = 40;
 constexpr double kCorrected_m = 1e-8;
 
+Eigen::Matrix3d world_inertia(const FreeBody& b) {
+  const Eigen::Matrix3d turn = b.orientation.toRotationMatrix();
+  return turn * b.inertia_kg_m2 * turn.transpose();
+}
+
 double spin_energy_J(const FreeBody& b) {
   const Eigen::Vector3d spin = b.orientation.conjugate() * b.spin_rad_s;
   return spin.dot(b.inertia_kg_m2 * spin) / 2;
 }
+
+double kinetic_energy_J(const FreeBody& b) { return b.mass_kg * b.velocity_m_s.squaredNorm() / 2 + spin_energy_J(b); }
 
 }  // namespace
 
@@ -180,7 +187,7 @@ void World::stop_approach(std::span<const Manifold> contacts, double min_overlap
 }
 
 // Adds the smallest displacements, weighted by inertia, with which gaps stay open at the end of the step and overlaps
-// shrink by their correction. Velocities do not change.
+// shrink by their correction. Velocities change only where floating bodies would lose angular momentum.
 void World::correct_positions(double h) {
   end_gap_m_.resize(rows_.points.size());
   lift_.assign(rows_.points.size(), 0);
@@ -201,8 +208,25 @@ void World::correct_positions(double h) {
       rows_.apply(p, {push, 0, 0}, position_offset_);
       change = std::max(change, std::abs(push) * p.mobility(0, 0));
     }
-    if (change < kCorrected_m) return;
+    if (change < kCorrected_m) break;
   }
+  floating_.find(rows_, lift_);
+  if (floating_.members().empty()) return;
+  lost_kg_m2_s_.resize(velocity_.twists.size());
+  for (const auto& m : floating_.members()) lost_kg_m2_s_[index(m.twist)].setZero();
+  for (std::size_t i = 0; i < rows_.points.size(); ++i) {
+    const ContactPoint& p = rows_.points[i];
+    if (lift_[i] == 0) continue;
+    const Eigen::Vector3d push = lift_[i] * p.axes.row(0);
+    if (p.a) lost_kg_m2_s_[index(p.a)] += push.cross(velocity_.twists[index(p.a)].linear_m_s);
+    if (p.b) lost_kg_m2_s_[index(p.b)] -= push.cross(velocity_.twists[index(p.b)].linear_m_s);
+  }
+  floating_.restore_spin([&](int twist) {
+    const FreeBody& b = free_[index(twist - 1)];
+    Twist& v = velocity_.twists[index(twist)];
+    return FloatingIslands::Body{b.mass_kg, free_motions_[index(twist - 1)].inertia, b.centre_m + position_offset_.twists[index(twist)].linear_m_s,
+                                 lost_kg_m2_s_[index(twist)], &v.linear_m_s, &v.angular_rad_s};
+  });
 }
 
 // Updates the inertia of the bodies in contact, at the current poses.
@@ -243,19 +267,44 @@ double World::separate(std::span<const Manifold> contacts, double max_overlap_m)
     }
     if (change < kSettled_m) break;
   }
+  lift_.clear();
+  for (const ContactPoint& p : rows_.points) lift_.push_back(p.impulse.x());
+  floating_.find(rows_, lift_);
+  lost_kg_m2_s_.resize(velocity_.twists.size());
   double gained = 0;
-  for (const int unit : active_) {
-    const std::size_t i = index(unit);
-    if (i < free_.size()) {
-      const Twist& by = velocity_.twists[i + 1];
-      if (by.linear_m_s.isZero(0) && by.angular_rad_s.isZero(0)) continue;
-      const double before = spin_energy_J(free_[i]);
-      displace(free_[i], by.linear_m_s, by.angular_rad_s);
-      place(motions_[index(body_of_[i])], motion_of(free_[i]));
-      gained += spin_energy_J(free_[i]) - before - free_[i].mass_kg * free_[i].gravity_m_s2.dot(by.linear_m_s);
-    } else {
-      separate_links(i - free_.size());
-    }
+  for (const int unit : active_)
+    if (index(unit) < free_.size())
+      gained += displace_free(unit);
+    else
+      separate_links(index(unit) - free_.size());
+  return gained + restore_spin();
+}
+
+// Moves a free body by the result. Returns the energy that it gains, and stores the angular momentum that it loses.
+double World::displace_free(int unit) {
+  FreeBody& b = free_[index(unit)];
+  const Twist& by = velocity_.twists[index(unit + 1)];
+  lost_kg_m2_s_[index(unit + 1)].setZero();
+  if (by.linear_m_s.isZero(0) && by.angular_rad_s.isZero(0)) return 0;
+  const double before_J = spin_energy_J(b);
+  const Eigen::Vector3d before = world_inertia(b) * b.spin_rad_s;
+  displace(b, by.linear_m_s, by.angular_rad_s);
+  place(motions_[index(body_of_[index(unit)])], motion_of(b));
+  lost_kg_m2_s_[index(unit + 1)] = before - world_inertia(b) * b.spin_rad_s - b.mass_kg * by.linear_m_s.cross(b.velocity_m_s);
+  return spin_energy_J(b) - before_J - b.mass_kg * b.gravity_m_s2.dot(by.linear_m_s);
+}
+
+// Returns the energy that the floating bodies gain.
+double World::restore_spin() {
+  double gained = 0;
+  for (const auto& m : floating_.members()) gained -= kinetic_energy_J(free_[index(m.twist - 1)]);
+  floating_.restore_spin([&](int twist) {
+    FreeBody& b = free_[index(twist - 1)];
+    return FloatingIslands::Body{b.mass_kg, world_inertia(b), b.centre_m, lost_kg_m2_s_[index(twist)], &b.velocity_m_s, &b.spin_rad_s};
+  });
+  for (const auto& m : floating_.members()) {
+    gained += kinetic_energy_J(free_[index(m.twist - 1)]);
+    motions_[index(body_of_[index(m.twist - 1)])] = motion_of(free_[index(m.twist - 1)]);
   }
   return gained;
 }

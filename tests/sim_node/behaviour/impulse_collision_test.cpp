@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 
 #include "tests/sim_node/support/articulated_trees.h"
 #include "tests/sim_node/support/small_worlds.h"
@@ -98,6 +99,46 @@ TEST_CASE("A collision with friction and spin keeps linear and angular momentum"
   // The impulse is computed at the impact and applied at the poses of the start of the step. The error is the
   // distance between, h times the closing speed of 1.5 m/s, times the impulse of at most (1 + e) 0.21 kg 1.5 m/s.
   CHECK((momenta().second - l).norm() < 0.001 * 1.5 * 1.6 * 0.21 * 1.5);
+}
+
+TEST_CASE("A ball that meets two planes in one step rebounds from them in the order of the impacts") {
+  std::mt19937 random(11);
+  const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  int slower_first = 0;
+  for (int trial = 0; trial < 600; ++trial) {
+    const double turn = draw(0.6, 2.4), h = 0.001, r = 0.02;
+    const Vector3d normals[2] = {{0, 0, 1}, {std::sin(turn), 0, std::cos(turn)}};
+    Toys toys;
+    toys.gravity_m_s2.setZero();
+    for (const Vector3d& n : normals) toys.plane(n, {0, 0, 0}, 0, 1);
+    // At distances from the planes that it covers within a step.
+    Vector3d v(draw(-8, 8), 0, draw(-8, 8));
+    double gap[2] = {draw(0.0005, 0.004), draw(0.0005, 0.004)};
+    const double along = (r + gap[1] - std::cos(turn) * (r + gap[0])) / std::sin(turn);
+    const int ball = toys.ball(0.1, r, {along, 0, r + gap[0]}, 0, 1);
+    toys.world.free_body(ball).velocity_m_s = v;
+    // Reflections, one after the other.
+    double left = h, first_speed = 0;
+    int bounces = 0;
+    while (true) {
+      int next = -1;
+      double after = left;
+      for (int k = 0; k < 2; ++k)
+        if (const double s = normals[k].dot(v); s < 0 && gap[k] / -s < after) next = k, after = gap[k] / -s;
+      for (int k = 0; k < 2; ++k) gap[k] += after * normals[k].dot(v);
+      left -= after;
+      if (next < 0) break;
+      const double speed = -normals[next].dot(v);
+      v += 2 * speed * normals[next];
+      if (++bounces == 1) first_speed = speed;
+      if (bounces == 2) slower_first += speed > first_speed;
+    }
+    toys.step(h);
+    INFO("trial " << trial << ", " << bounces << " impacts");
+    CHECK((toys.motion(ball).velocity_m_s - v).norm() < 1e-9);
+    for (int k = 0; k < 2; ++k) CHECK(normals[k].dot(toys.motion(ball).centre_m) - r == Approx(gap[k]).margin(1e-11));
+  }
+  CHECK(slower_first > 20);
 }
 
 TEST_CASE("A ball that strikes a hanging rod follows the impact formula of the compound pendulum") {

@@ -280,6 +280,38 @@ TEST_CASE("Surfaces that oscillate within the hysteresis keep one contact") {
   }
 }
 
+TEST_CASE("Each impact of a body that rattles is a hit, limited by the minimum interval") {
+  WorldDef w = empty_world(0);
+  add_floor(w);
+  add_ball(w, 0.1, 0.02, {0, 0, 0.02});
+  Settings settings;
+  Ids ids(1);
+  ContactTracker tracker(surface_traits(w, settings), settings, ids);
+  std::vector<contact_event_t> events;
+  std::vector<BodyMotion> bodies(2);
+  bodies[1].inverse_mass_1_kg = 10;
+  bodies[1].position_m = bodies[1].centre_m = {0, 0, 0.02};
+  Manifold touch;
+  touch.shape_a = 0, touch.shape_b = 1, touch.body_a = 0, touch.body_b = 1, touch.count = 1;
+  Manifold struck = touch;
+  struck.impact.count = 1;
+  struck.impact.effective_mass_kg = 0.1;
+  struck.points[0].normal_force_N = 1;
+  // An impact in every step, at the end of which the surfaces touch.
+  for (int i = 1; i <= 60; ++i) {
+    struck.impact.first_s = struck.impact.last_s = 0.0005;
+    struck.impact.speed_m_s = 0.2 + 0.001 * i;
+    tracker.update(sync::sim_time(i * std::int64_t{1'000'000}), sync::Nanoseconds(1'000'000), bodies, {&touch, 1}, {&struck, 1}, events);
+  }
+  REQUIRE(events.size() == 1 + 60 / 5);
+  CHECK(events[0].kind == contact_event_t::BEGIN);
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    CHECK(events[i].kind == contact_event_t::HIT);
+    CHECK(events[i].time_ns == static_cast<std::int64_t>(i - 1) * 5'000'000 + 500'000);
+    CHECK(events[i].approach_speed_m_s == Approx(0.201 + 0.005 * static_cast<double>(i - 1)));
+  }
+}
+
 TEST_CASE("A ball that falls 300 km from the origin hits at its exact place") {
   WorldDef w = empty_world();
   add_floor(w);
