@@ -9,12 +9,12 @@ namespace {
 // Bodies within this gap of a static body or a link exchange angular momentum with it, m.
 constexpr double kNear_m = 1e-4;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t slot(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
 int FloatingIslands::root(int twist) {
-  while (root_[at(twist)] != twist) twist = root_[at(twist)] = root_[at(root_[at(twist)])];
+  while (root_[slot(twist)] != twist) twist = root_[slot(twist)] = root_[slot(root_[slot(twist)])];
   return twist;
 }
 
@@ -22,11 +22,11 @@ void FloatingIslands::find(const ContactRows& rows, std::span<const double> push
   members_.clear();
   if (std::none_of(pushed.begin(), pushed.end(), [](double p) { return p > 0; })) return;
   root_.resize(rows.inertias.size());
-  for (const ContactPoint& p : rows.points) root_[at(p.a)] = p.a, root_[at(p.b)] = p.b;
+  for (const ContactPoint& p : rows.points) root_[slot(p.a)] = p.a, root_[slot(p.b)] = p.b;
   // Twist 0, of static bodies and links, is the root of all that do not float.
   const auto join = [&](int a, int b) {
     const int low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
-    root_[at(high)] = low;
+    root_[slot(high)] = low;
   };
   root_[0] = 0;
   for (std::size_t i = 0; i < rows.points.size(); ++i) {
