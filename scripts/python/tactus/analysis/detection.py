@@ -28,8 +28,8 @@ def draws_of(value, interval, rng, draws=resampling.DRAWS):
 def edges(curve, sign, rng):
     """(value, draws) of the largest lateness of one sense, ms, in one fit; sign: +1 for the second of the pair, -1 for the first."""
     if curve.condition.kind == "sj":
-        value, interval = curve.window("high75" if sign > 0 else "low75")
-        return sign * value, None if rng is None else sign * draws_of(value, interval, rng)
+        name = "high75" if sign > 0 else "low75"
+        return sign * curve.window_value(name), None if rng is None else sign * draws_of(*curve.window(name), rng)
     value = sign * curve.value("pss") + curve.value("jnd")
     if rng is None:
         return value, None

@@ -3,7 +3,9 @@
 A condition of a synchrony or order judgement is the pair of senses; of a detection task it is the sense, the operator and the unit. Fits are those of
 tactus/psychophysics (maximum likelihood with guess and lapse rates).
 """
+import collections.abc
 import dataclasses
+import functools
 import math
 
 import numpy as np
@@ -45,8 +47,8 @@ class Condition:
 
 @dataclasses.dataclass
 class Curve:
-    """One fit. levels, yes, total: (k,) data of the fit; intervals: {name: (low, high)} of parameters and derived values. Without a fit, fit is None
-    and why the reason; with one, why names a value that the answers do not determine, or is empty."""
+    """One fit. levels, yes, total: (k,) data of the fit. Without a fit, fit is None and why the reason; with one, why names a value that the answers do
+    not determine, or is empty. rng: random numbers of the dispersion."""
     condition: Condition
     participant: str
     levels: np.ndarray
@@ -55,21 +57,63 @@ class Curve:
     trials: object
     observer: str
     fit: object = None
-    intervals: dict = dataclasses.field(default_factory=dict)
     why: str = ""
     asymmetric: independent_channels.Fit = None  # of judgements of synchrony
     aic: dict = dataclasses.field(default_factory=dict)  # {model: Akaike's criterion}; the smallest describes the answers best
+    rng: object = None
 
-    dispersion: overdispersion.Dispersion = None
+    @functools.cached_property
+    def dispersion(self):
+        """overdispersion.Dispersion of the fit, or None; computed when first asked for."""
+        return overdispersion.dispersion(self.fit, self.rng) if self.fit else None
+
+    @functools.cached_property
+    def intervals(self):
+        """Intervals of parameters and derived values, empty without a fit."""
+        return Intervals(self)
 
     def value(self, name):
         return {**self.fit.params, **self.fit.derived}[name]
 
     def window(self, name):
         """(value, interval) of low75, high75 or pss: of the asymmetric window if its intervals were asked for, else of the symmetric one."""
-        if self.asymmetric and self.asymmetric.intervals:
-            return self.asymmetric.values[name], self.asymmetric.intervals[name]
-        return self.value(name), self.intervals[name]
+        return self.window_value(name), self.asymmetric.intervals[name] if self.has_asymmetric() else self.intervals[name]
+
+    def window_value(self, name):
+        return self.asymmetric.values[name] if self.has_asymmetric() else self.value(name)
+
+    def has_asymmetric(self):
+        return bool(self.asymmetric and self.asymmetric.intervals)
+
+
+class Intervals(collections.abc.Mapping):
+    """{name: (low, high)} of a Curve. Each is computed when first asked for, because it takes up to a second."""
+
+    def __init__(self, curve):
+        self.curve, self.found = curve, {}
+        self.names = wanted(curve.fit) if curve.fit else []
+
+    def __iter__(self):
+        return iter(self.names)
+
+    def __len__(self):
+        return len(self.names)
+
+    def __getitem__(self, name):
+        if name not in self.names:
+            raise KeyError(name)
+        if name not in self.found:
+            low, high = (float(v[0]) for v in intervals.of_many(self.of_rates if name in RATES else self.of_others, name))
+            self.found[name] = min(low, self.curve.value(name)), max(high, self.curve.value(name))
+        return self.found[name]
+
+    @functools.cached_property
+    def of_rates(self):
+        return overdispersion.inflated(self.curve.fit.many, self.curve.dispersion.width())
+
+    @functools.cached_property
+    def of_others(self):
+        return overdispersion.over_dispersed(self.curve.fit.many, self.curve.dispersion.factor)
 
 
 def achieved(rows, condition):
@@ -120,7 +164,7 @@ def curve(condition, participant, rows, rng, asymmetric=False):
     answered, yes = answers.answered(condition.kind, rows, condition.pair)
     keep = answered & ~np.isnan(levels)
     rows, levels, yes = rows.where(keep), levels[keep], yes[keep]
-    made = Curve(condition, participant, *(binned(levels, yes) if len(levels) else (np.array([]),) * 3), rows, rows.observer() if len(rows) else "")
+    made = Curve(condition, participant, *(binned(levels, yes) if len(levels) else (np.array([]),) * 3), rows, rows.observer() if len(rows) else "", rng=rng)
     if len(levels) < FEWEST_TRIALS:
         made.why = f"{len(levels)} answers with a measured level are too few for a fit; {FEWEST_TRIALS} are needed"
     elif len(set(yes)) < 2:
@@ -139,11 +183,6 @@ def curve(condition, participant, rows, rng, asymmetric=False):
                 made.asymmetric = independent_channels.fit(made.levels, made.yes, made.total, rng if asymmetric else None)
                 forced = fits.fit(made.levels, made.yes, made.total, answers.FUNCTION["sj"], forced_peak=True)
                 made.aic = {"free peak": fitted.aic, "peak near 1": forced.aic, "asymmetric": made.asymmetric.aic}
-            made.dispersion = overdispersion.dispersion(fitted, rng)
-            of_rates, of_others = overdispersion.inflated(fitted.many, made.dispersion.width()), overdispersion.over_dispersed(fitted.many, made.dispersion.factor)
-            for name in wanted(fitted):
-                low, high = (float(v[0]) for v in intervals.of_many(of_rates if name in RATES else of_others, name))
-                made.intervals[name] = min(low, made.value(name)), max(high, made.value(name))
     return made
 
 

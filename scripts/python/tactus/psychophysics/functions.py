@@ -16,6 +16,11 @@ GUESS_PRIOR = 10.0   # Schuett et al. 2016, Vision Research 122:105: Beta(1, 10)
 SMALLEST_LEVEL = 1e-12  # argument of a logarithm; design
 
 
+def within(x, low, high):
+    """x limited to a range, as numpy.clip does, in a fifth of the time for small arrays."""
+    return np.minimum(np.maximum(x, low), high)
+
+
 class Gaussian:
     """Phi(u)."""
     quartile = 0.6744897501960817  # Phi^-1(0.75)
@@ -48,7 +53,7 @@ class Gumbel:
 
     @staticmethod
     def both(u):
-        e = np.exp(np.clip(u, -700, 40))
+        e = np.exp(within(u, -700, 40))
         return -np.expm1(-e), e * np.exp(-e)
 
     @staticmethod

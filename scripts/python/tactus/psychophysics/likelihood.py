@@ -10,7 +10,7 @@ import dataclasses
 
 import numpy as np
 
-from tactus.psychophysics.functions import GUESS_PRIOR
+from tactus.psychophysics.functions import GUESS_PRIOR, within
 
 TOLERANCE = 1e-7    # of the log likelihood; negligible against the drop of 1.9 of an interval; design
 MAX_STEPS = 200     # scoring takes 5 to 30; design
@@ -37,9 +37,9 @@ def probability(function, z, theta, anchor=None):
     s = np.exp(t)
     u0 = 0.0 if anchor is None else function.anchor(anchor, guess)
     u = (z - q) / s + u0
-    core, slope = function.core.both(np.clip(u, -1e6, 1e6))
+    core, slope = function.core.both(within(u, -1e6, 1e6))
     a, b = function.rates(guess, lapse)
-    p = np.clip(a + b * core, LEAST_P, 1 - LEAST_P)
+    p = within(a + b * core, LEAST_P, 1 - LEAST_P)
     by = np.empty(p.shape + (4,))
     by[..., Q] = -b * slope / s
     by[..., T] = -b * slope * (u - u0)
@@ -66,7 +66,7 @@ def maximise(answers, start, free, low, high, anchor=None):
 
     start (n, 4); free (4,) of bool: fitted parameters, the others keep their start; low, high (n, 4): bounds."""
     free = np.asarray(free, dtype=bool)
-    theta = np.where(free, np.clip(start, low, high), start)
+    theta = np.where(free, within(start, low, high), start)
     n = len(theta)
     value = np.full(n, -np.inf)
     done = np.zeros(n, dtype=bool)
@@ -79,7 +79,7 @@ def maximise(answers, start, free, low, high, anchor=None):
         if not len(index):
             break
         step, gain = scoring_step(some, p, by, theta[index], free, low[index], high[index], damping[index])
-        tried = np.where(free, np.clip(theta[index] + step, low[index], high[index]), theta[index])
+        tried = np.where(free, within(theta[index] + step, low[index], high[index]), theta[index])
         new_p, new_by = probability(some.function, some.z, tried, anchor)
         new = log_likelihood(some, new_p) + log_prior(tried, free)
         better = new >= value[index]
@@ -88,7 +88,7 @@ def maximise(answers, start, free, low, high, anchor=None):
         poor = new - value[index] < 0.1 * gain
         theta[index[better]], value[index[better]] = tried[better], new[better]
         p, by = np.where(better[:, None], new_p, p), np.where(better[:, None, None], new_by, by)
-        damping[index] = np.clip(damping[index] * np.where(~better, 10, np.where(poor, 4, 0.2)), 1e-9, 1e13)
+        damping[index] = within(damping[index] * np.where(~better, 10, np.where(poor, 4, 0.2)), 1e-9, 1e13)
         done[index[finished]] = True
         if finished.any():
             keep = ~finished
@@ -111,5 +111,5 @@ def scoring_step(answers, p, by, theta, free, low, high, damping):
     # The floor prevents a singular matrix if the answers carry no information about a parameter.
     diagonal += np.where(held, 1.0, damping[:, None] * diagonal + FLOOR)
     step = np.linalg.solve(information, score[..., None])[..., 0]
-    step[:, T] = np.clip(step[:, T], -1.0, 1.0)  # at most a factor of e in a step
+    step[:, T] = within(step[:, T], -1.0, 1.0)  # at most a factor of e in a step
     return step, np.einsum("ni,ni->n", step, score)

@@ -11,9 +11,10 @@ prior Beta(1, b) on eta (Schuett et al. 2016, who use b = 10). The intervals the
 import math
 
 import numpy as np
+from scipy import sparse
 from scipy.special import gammaln, roots_legendre
 
-from tactus.psychophysics.functions import GUESS_PRIOR
+from tactus.psychophysics.functions import GUESS_PRIOR, within
 from tactus.psychophysics.likelihood import GUESS, LAPSE, LEAST_P, Q, T
 
 SPREAD = (0.01, 0.9)       # in spans of the levels: 3.3 spreads (5 to 95 %) are at most three spans (Schuett et al. 2016); the lower end resolves a step
@@ -74,18 +75,27 @@ class OverDispersedAnswers:
     def __init__(self, yes, total, prior):
         eta, self.log_weights = eta_nodes(prior)
         pairs, index = np.unique(np.stack([yes.ravel(), total.ravel()], axis=1), axis=0, return_inverse=True)
-        self.tables = beta_binomial_tables(eta, pairs[:, 0], pairs[:, 1])
-        self.index = index.reshape(yes.shape)[:, None, None, :]
+        tables = beta_binomial_tables(eta, pairs[:, 0], pairs[:, 1])
+        # One row for each entry of a table, with the values of all nodes.
+        self.tables = np.ascontiguousarray(np.moveaxis(tables, 0, -1)).reshape(-1, len(eta))
+        self.first_row = (index.reshape(yes.shape) * len(LOGITS)).astype(np.int32)[:, None, None, :]
 
     def integrated(self, p):
         """(m, i, j) for probabilities (m, i, j, k)."""
-        place = np.clip((np.log(p) - np.log1p(-p) - LOGITS[0]) / (LOGITS[1] - LOGITS[0]), 0, len(LOGITS) - 1.001)
-        low = place.astype(int)
-        share, found = place - low, None
-        for table, weight in zip(self.tables, self.log_weights):
-            value = weight + ((1 - share) * table[self.index, low] + share * table[self.index, low + 1]).sum(axis=-1)
-            found = value if found is None else np.logaddexp(found, value)
-        return found
+        place = within((np.log(p / (1 - p)) - LOGITS[0]) / (LOGITS[1] - LOGITS[0]), 0, len(LOGITS) - 1.001)
+        low = place.astype(np.int32)
+        share = place - low
+        # Interpolation and the sum over the counts are one product with a sparse matrix: two entries for each count.
+        rows, shares = np.empty((*p.shape, 2), np.int32), np.empty((*p.shape, 2))
+        np.add(self.first_row, low, out=rows[..., 0])
+        np.add(rows[..., 0], 1, out=rows[..., 1])
+        np.subtract(1, share, out=shares[..., 0])
+        shares[..., 1] = share
+        cells, each = math.prod(p.shape[:-1]), 2 * p.shape[-1]
+        starts = np.arange(0, cells * each + 1, each, dtype=np.int32)
+        values = self.log_weights + sparse.csr_matrix((shares.ravel(), rows.ravel(), starts), shape=(cells, len(self.tables)), copy=False) @ self.tables
+        most = values.max(axis=1)
+        return (most + np.log(np.exp(values - most[:, None]).sum(axis=1))).reshape(p.shape[:-1])
 
 
 def integrated(fits, rows, anchor, q, t, nodes):
@@ -97,10 +107,10 @@ def integrated(fits, rows, anchor, q, t, nodes):
     for guess, of_guess in nodes[0]:
         guess = guess[rows][:, None, None, None]
         offset = 0.0 if anchor is None else f.anchor(anchor, guess)
-        core = f.core.both(np.clip((z - q[:, :, None, None]) / np.exp(t)[:, None, :, None] + offset, -1e6, 1e6))[0]
+        core = f.core.both(within((z - q[:, :, None, None]) / np.exp(t)[:, None, :, None] + offset, -1e6, 1e6))[0]
         for lapse, of_lapse in nodes[1]:
             a, b = f.rates(guess, lapse[rows][:, None, None, None])
-            p = np.clip(a + b * core, LEAST_P, 1 - LEAST_P)
+            p = within(a + b * core, LEAST_P, 1 - LEAST_P)
             of_answers = dispersed.integrated(p) if dispersed else (yes * np.log(p) + (total - yes) * np.log1p(-p)).sum(axis=-1)
             value = (of_guess + of_lapse)[rows][:, None, None] + of_answers
             total_log = value if total_log is None else np.logaddexp(total_log, value)
@@ -132,7 +142,7 @@ def posterior_of(fits, anchor, profile_range):
         return shared((which, of_anchor), lambda: profile_range(which, of_anchor))
 
     def compute():
-        q_range, t_range = ([np.clip(end, *limits) for end in profile_of(w, a)] for w, a, limits in
+        q_range, t_range = ([within(end, *limits) for end in profile_of(w, a)] for w, a, limits in
                             ((Q, anchor, (-4.0, 4.0)), (T, None, tuple(math.log(s) for s in SPREAD))))
         t_range = [np.minimum(t_range[0], t_range[1] - 1e-3), t_range[1]]
         nodes = [rate_nodes(fits, rate, profile_of) for rate in (GUESS, LAPSE)]
