@@ -1,4 +1,5 @@
 """Intervals of small samples of people hold the truth in 95 of 100."""
+import functools
 import math
 import unittest
 
@@ -69,6 +70,7 @@ class Differences(unittest.TestCase):
         self.assertGreater(people.p_inferior(people.Share([2] * 6, [20] * 6), people.Share([19] * 6, [20] * 6), 0.1), 0.99)
 
 
+@functools.lru_cache
 def odds_of(mean):
     """Log odds whose mean share over people, who differ by 0.5, is `mean`."""
     z, w = np.polynomial.hermite_e.hermegauss(30)

@@ -86,10 +86,7 @@ class Dispersion(unittest.TestCase):
         for _ in range(50):
             total = rng.integers(1, 60, 5).astype(float)
             yes, eta, p = np.floor(rng.uniform(size=5) * (total + 1)), rng.uniform(0.01, 0.7, 1), rng.uniform(0.001, 0.999, (1, 1, 1, 5))
-            of = posterior.OverDispersedAnswers(yes[None], total[None], 1.0)
-            of.tables, of.log_weights = of.tables[:1], np.zeros(1)
-            pairs = np.unique(np.stack([yes, total], axis=1), axis=0)
-            of.tables[0] = posterior.beta_binomial_tables(eta, pairs[:, 0], pairs[:, 1])[0]
+            of = posterior.OverDispersedAnswers(yes[None], total[None], eta, np.zeros(1))
             nu = 1 / eta[0] ** 2 - 1
             exact = betabinom.logpmf(yes, total, nu * p[0, 0, 0], nu * (1 - p[0, 0, 0])) - (gammaln(total + 1) - gammaln(yes + 1) - gammaln(total - yes + 1))
             self.assertAlmostEqual(float(of.integrated(p)[0, 0, 0]), float(exact.sum()), delta=2e-3)

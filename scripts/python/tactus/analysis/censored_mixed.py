@@ -5,6 +5,7 @@ known only to take longer than its time. Adaptive Gauss-Hermite quadrature integ
 Computational and Graphical Statistics 4:12). A model of min(time, limit) instead takes lost games for games of just that time, and its slope is too small.
 """
 import dataclasses
+import functools
 import math
 
 import numpy as np
@@ -40,6 +41,12 @@ def terms(residual, won, log_sd):
     return value, np.where(won, residual, hazard) / sd, np.where(won, -1.0, -hazard * (hazard - z)) / sd**2
 
 
+@functools.lru_cache
+def hermite(count):
+    """(nodes, weights), each (count,), of Gauss-Hermite quadrature for a standard normal distribution."""
+    return np.polynomial.hermite_e.hermegauss(count)
+
+
 def log_likelihood(theta, fixed, random, at, logs, won, groups, start, count=None):
     """theta: beta, log sd, then the lower triangle of L, row by row, with covariance L L'. start: (groups, q) initial modes, overwritten. at: (n,) index of
     the participant. count: nodes in each random effect; 1 is Laplace's approximation; None: NODES."""
@@ -59,7 +66,7 @@ def log_likelihood(theta, fixed, random, at, logs, won, groups, start, count=Non
         if np.abs(step).max() < NEWTON_DONE:
             break
     start[:] = v
-    nodes, weights = np.polynomial.hermite_e.hermegauss(count or NODES[q])
+    nodes, weights = hermite(count or NODES[q])
     grid = np.stack(np.meshgrid(*[nodes] * q, indexing="ij"), axis=-1).reshape(-1, q)
     logw = np.log(np.stack(np.meshgrid(*[weights] * q, indexing="ij"), axis=-1).reshape(-1, q)).sum(axis=1) - q / 2 * math.log(2 * math.pi)
     spread = np.linalg.inv(np.linalg.cholesky(curve)).transpose(0, 2, 1)  # L^-T: covariance is the inverse of the curvature

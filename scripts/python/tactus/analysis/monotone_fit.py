@@ -6,6 +6,7 @@ Gaussian Processes for Machine Learning, sections 2.2, 4.2 and 5.4). The squared
 Draws of the process are projected to monotone curves (Lin and Dunson 2014, Biometrika 101:303). Straight lines between the levels instead are biased
 by the curvature, and their intervals hold the truth less often the more games are played.
 """
+import functools
 import math
 
 import numpy as np
@@ -42,28 +43,43 @@ def matern(distance):
     return (1 + d + d * d / 3) * np.exp(-d)
 
 
+class Prior:
+    """Covariance of the process at the points of the grid and at the positions. The levels of a study repeat, so each is computed once."""
+
+    def __init__(self, positions, length, scale, unit):
+        points = np.concatenate([np.linspace(0, 1, GRID), positions])
+        self.of_points = scale**2 * matern(np.abs(points[:, None] - points[None]) / length) + (MEAN_SD * unit) ** 2
+        self.whole = self.of_points + JITTER * scale**2 * np.eye(len(points))
+
+    @functools.cached_property
+    def root(self):
+        return np.linalg.cholesky(self.whole)
+
+    @staticmethod
+    @functools.lru_cache(maxsize=4 * len(LENGTHS) * len(SCALES))
+    def of(positions, length, scale, unit):
+        return Prior(positions, length, scale, unit)
+
+
 def draws_at(positions, values, covariance, rng, unit=1.0, df=np.inf, draws=DRAWS):
     """(draws, GRID) curves of the process at GRID positions from 0 to 1, by Matheron's rule: draws of the prior, corrected by their distance to the measurements.
 
     positions (k,): within 0 and 1. values (k,), covariance (k, k): of the measurements. unit: scale of the values, 1 for log odds. df: degrees of freedom
     of the covariance; with few, its size is drawn too."""
-    k, grid = len(positions), np.linspace(0, 1, GRID)
-    points = np.concatenate([grid, positions])
-    apart = np.abs(points[:, None] - points[None])
-    kinds = [(length, scale * unit) for length in LENGTHS for scale in SCALES]
-    prior = lambda length, scale, d: scale**2 * matern(d / length) + (MEAN_SD * unit) ** 2
+    k, kinds = len(positions), [(length, scale * unit) for length in LENGTHS for scale in SCALES]
+    priors = [Prior.of(tuple(positions), length, scale, unit) for length, scale in kinds]
     logs = np.empty(len(kinds))
-    for i, (length, scale) in enumerate(kinds):
-        root = np.linalg.cholesky(prior(length, scale, apart[GRID:, GRID:]) + covariance + JITTER * scale**2 * np.eye(k))
+    for i, ((_, scale), prior) in enumerate(zip(kinds, priors)):
+        root = np.linalg.cholesky(prior.of_points[GRID:, GRID:] + covariance + JITTER * scale**2 * np.eye(k))
         logs[i] = -0.5 * np.sum(np.linalg.solve(root, values) ** 2) - np.log(np.diag(root)).sum()
     weights = np.exp(logs - logs.max())
     made = []
     noise = np.linalg.cholesky(covariance + 1e-12 * unit**2 * np.eye(k))
-    for (length, scale), n in zip(kinds, rng.multinomial(draws, weights / weights.sum())):
+    for prior, n in zip(priors, rng.multinomial(draws, weights / weights.sum())):
         if not n:
             continue
-        whole = prior(length, scale, apart) + JITTER * scale**2 * np.eye(len(points))
-        drawn = rng.standard_normal((n, len(points))) @ np.linalg.cholesky(whole).T
+        whole = prior.whole
+        drawn = rng.standard_normal((n, len(whole))) @ prior.root.T
         size = np.ones(n) if np.isinf(df) else df / rng.chisquare(df, n)
         missed = values - drawn[:, GRID:] - np.sqrt(size)[:, None] * (rng.standard_normal((n, k)) @ noise.T)
         inner = whole[None, GRID:, GRID:] + size[:, None, None] * covariance

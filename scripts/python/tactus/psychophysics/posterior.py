@@ -8,6 +8,7 @@ Beta(1, 10) over a fitted guess rate. For a location and a scale these priors gi
 Answers may be over-dispersed (overdispersion.py): then the likelihood is beta-binomial, and it is integrated over eta, the root of the correlation of two answers, with the
 prior Beta(1, b) on eta (Schuett et al. 2016, who use b = 10). The intervals then include the uncertainty of the dispersion.
 """
+import functools
 import math
 
 import numpy as np
@@ -26,6 +27,12 @@ ETA_MOST, ETA_NODES = 0.75, 10  # eta of the integral, from 0; its Gauss-Legendr
 LOGITS = np.linspace(-14, 14, 1401)  # of the probabilities of a table, between which its entries are linear; design
 
 
+@functools.lru_cache
+def legendre(count):
+    """(nodes, weights), each (count,), of Gauss-Legendre quadrature."""
+    return roots_legendre(count)
+
+
 def rate_nodes(fits, rate, profile_range):
     """[(values (n,), log weights (n,))] of one rate: Gauss-Legendre nodes within its profile interval, which is narrow for many trials; one node for a
     fixed rate."""
@@ -33,7 +40,7 @@ def rate_nodes(fits, rate, profile_range):
         return [(fits.theta[:, rate], np.zeros(len(fits)))]
     low, high = profile_range(rate, None)
     low, high = np.minimum(low, fits.theta[:, rate]), np.maximum(np.maximum(high, fits.theta[:, rate]), low + 1e-6)
-    x, w = roots_legendre(WIDE_NODES if fits.eta_prior else NODES)
+    x, w = legendre(WIDE_NODES if fits.eta_prior else NODES)
     nodes = [(low + (high - low) * (1 + a) / 2, np.full(len(fits), math.log(b))) for a, b in zip(x, w)]
     return [(v, u + (GUESS_PRIOR - 1) * np.log1p(-v)) for v, u in nodes] if rate == GUESS else nodes
 
@@ -55,7 +62,7 @@ def marginals(fits, anchor, q_range, t_range, nodes):
 
 def eta_nodes(prior):
     """(eta (e,), log weights (e,)) of the prior Beta(1, prior)."""
-    x, w = roots_legendre(ETA_NODES)
+    x, w = legendre(ETA_NODES)
     eta = ETA_MOST * (1 + x) / 2
     return eta, np.log(w) + (prior - 1) * np.log1p(-eta)
 
@@ -70,10 +77,10 @@ def beta_binomial_tables(eta, yes, total):
 
 
 class OverDispersedAnswers:
-    """Log likelihood of answers (m, k), for each node of eta."""
+    """Log likelihood of answers (m, k), for nodes of eta (e,) and their log weights (e,)."""
 
-    def __init__(self, yes, total, prior):
-        eta, self.log_weights = eta_nodes(prior)
+    def __init__(self, yes, total, eta, log_weights):
+        self.log_weights = log_weights
         pairs, index = np.unique(np.stack([yes.ravel(), total.ravel()], axis=1), axis=0, return_inverse=True)
         tables = beta_binomial_tables(eta, pairs[:, 0], pairs[:, 1])
         # One row for each entry of a table, with the values of all nodes.
@@ -103,7 +110,7 @@ def integrated(fits, rows, anchor, q, t, nodes):
     f = fits.function
     z, yes, total = (a[rows][:, None, None, :] for a in (fits.answers.z, fits.answers.yes, fits.answers.total))
     total_log = None
-    dispersed = OverDispersedAnswers(fits.answers.yes[rows], fits.answers.total[rows], fits.eta_prior) if fits.eta_prior else None
+    dispersed = OverDispersedAnswers(fits.answers.yes[rows], fits.answers.total[rows], *eta_nodes(fits.eta_prior)) if fits.eta_prior else None
     for guess, of_guess in nodes[0]:
         guess = guess[rows][:, None, None, None]
         offset = 0.0 if anchor is None else f.anchor(anchor, guess)
