@@ -16,7 +16,7 @@ struct TwoHosts {
   static constexpr std::int64_t kFrames = 120;  // of a wall at 60 Hz; more than 100 frames allow a share of 99 %
   // Frames show the head and the world of this time ago, s. It exceeds the drawing time of a picture of this size beside other load, so
   // that no frame begins before its data have arrived.
-  static constexpr const char* kLag = "frame_lag=0.15";
+  static constexpr const char* kLag = "frame_lag=0.3";
   struct ShownFrame {
     std::int64_t world_ns = 0, head_ns = 0;
   };
@@ -137,13 +137,13 @@ TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second
   if (!c.start({"--emulate-load", "5"})) return;  // wastes five of six periods
   c.record_frames(20);
   c.check_agreement();
-  const auto& left = c.frames[TwoHosts::kLeft];
-  const auto due = static_cast<double>(left.rbegin()->first - left.begin()->first + 1);
-  CHECK(static_cast<double>(left.size()) >
-        0.5 * due);  // of 60 per second; at most 10 if it waited for the slow wall
-  const double share = static_cast<double>(c.frames[TwoHosts::kFront].size()) /
-                       static_cast<double>(c.frames[TwoHosts::kLeft].size());
-  CHECK(share < 0.3);  // 10 of 60, and other work of the machine
+  // The slow wall begins at most one of six frames, beside any other work of the machine. If the left wall waited for it, both would
+  // show the same frames.
+  const auto left = static_cast<double>(c.frames[TwoHosts::kLeft].size());
+  CHECK(static_cast<double>(c.common()) < 0.5 * left);
+  const auto& front = c.frames[TwoHosts::kFront];
+  const auto due = static_cast<double>(front.rbegin()->first - front.begin()->first + 1);
+  CHECK(static_cast<double>(front.size()) < 0.3 * due);
 }
 
 TEST_CASE("Walls that wait for each other show the same state, and stop waiting for a dead wall") {

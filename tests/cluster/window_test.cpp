@@ -97,6 +97,19 @@ struct Desktop : PictureCluster {
     const sync::HostTime end = sync::host_now() + sync::from_seconds(seconds);
     receive_until([&] { return sync::host_now() >= end; });
   }
+  // Whether the picture comes to differ from another by an amount that the condition accepts.
+  template <class Condition>
+  bool difference_becomes(const Grey& other, const Condition& condition) {
+    for (const sync::HostTime end = sync::host_now() + sync::from_seconds(kTimeout_s); sync::host_now() < end; receive_for(0.3))
+      if (condition(mean_difference(other, picture()))) return true;
+    return false;
+  }
+  bool differs(const Grey& other, double more_than) {
+    return difference_becomes(other, [&](double d) { return d > more_than; });
+  }
+  bool equals(const Grey& other) {
+    return difference_becomes(other, [](double d) { return d < 1; });
+  }
   // Asks the window to close as a window manager does (ICCCM 4.2.8.1).
   void request_close() {
     const char* program = R"(
@@ -141,10 +154,9 @@ TEST_CASE("A window shows the picture, and its keys pause, step and reset the wo
   CHECK(c.receive_until([&] { return c.rate == 0; }));
   const Grey still = c.later_picture();
   c.xdotool({"key", "h"});
-  const Grey helped = c.later_picture();
-  CHECK(mean_difference(still, helped) > 3);  // a plate full of text
+  CHECK(c.differs(still, 3));  // a plate full of text
   c.xdotool({"key", "h"});
-  CHECK(mean_difference(still, c.later_picture()) < 1);
+  CHECK(c.equals(still));
   c.xdotool({"key", "period"});
   c.xdotool({"key", "r"});
   c.xdotool({"key", "space"});
@@ -179,7 +191,6 @@ TEST_CASE("The window draws a question of a study and answers it by its keys, wh
     m.progress = "block 1 of 4";
     c.open_question = m;
     c.next_question = {};
-    c.receive_for(1);  // until a picture shows the change
   };
   const auto answer = [&](std::int64_t id) {
     REQUIRE(c.receive_until([&] { return c.answered[id].size() >= 3; }));  // each repetition is answered
@@ -192,37 +203,39 @@ TEST_CASE("The window draws a question of a study and answers it by its keys, wh
   };
 
   ask(11, question_t::CHOICE, "Did you hear the ball and see it touch the floor at the same time?");
-  CHECK(mean_difference(still, c.picture()) > 3);
+  CHECK(c.differs(still, 3));
   c.xdotool({"key", "3"});  // there is no third choice; the key must not open an overlay either
   c.receive_for(0.5);
   CHECK(c.answered.empty());
   c.xdotool({"key", "2"});
   CHECK((answer(11).choice == 1 && answer(11).number == 0));
-  c.receive_for(0.5);
-  CHECK(mean_difference(still, c.picture()) < 1);  // the question is closed, and no overlay is open
+  CHECK(c.equals(still));  // the question is closed, and no overlay is open
 
   ask(12, question_t::NUMBER, "How hard was it?");
+  CHECK(c.differs(still, 1));
   for (const char* key : {"Right", "Up", "Up", "Left", "Left"}) c.xdotool({"key", key});  // 5 and 1, 1, 1, less 2
   c.xdotool({"key", "Return"});
   CHECK((answer(12).number == 6 && answer(12).choice == -1));
 
+  CHECK(c.equals(still));
   ask(13, question_t::READ, "Read this.");
+  CHECK(c.differs(still, 1));
   c.xdotool({"key", "space"});
   CHECK(answer(13).choice == -1);
   CHECK(c.rate == 0);  // the space key did not resume the simulation
 
   // A second window shows no questions.
+  CHECK(c.equals(still));
   c.set({"questions=false"});
   ask(14, question_t::READ, "Not here.");
+  c.receive_for(1);
   CHECK(mean_difference(still, c.picture()) < 1);
   c.set({"questions=true"});
-  c.receive_for(1);
-  CHECK(mean_difference(still, c.picture()) > 1);
+  CHECK(c.differs(still, 1));
 
   // The program with the question has stopped publishing.
   c.open_question = {};
-  c.receive_for(3.5);
-  CHECK(mean_difference(still, c.picture()) < 1);
+  CHECK(c.equals(still));
   CHECK(c.answered.find(14) == c.answered.end());
   c.xdotool({"key", "space"});
   CHECK(c.receive_until([&] { return c.rate > 0; }));

@@ -84,10 +84,10 @@ class Hosts(unittest.TestCase):
 
     def incarnations(self):
         """{node: incarnation}; a restarted process has another number."""
-        return {name: node["pid"] for s in self.r.operator.states().values() for name, node in s["nodes"].items()}
+        return {name: node["pid"] for s in self.r.states().values() for name, node in s["nodes"].items()}
 
     def test_10_every_host_runs_its_nodes_of_the_file_from_its_own_build(self):
-        states = self.r.operator.states()
+        states = self.r.states()
         for host, s in states.items():
             self.assertEqual(set(self.r.cluster.nodes_on(host)), set(s["nodes"]))
             for node in s["nodes"].values():
@@ -168,7 +168,7 @@ class Hosts(unittest.TestCase):
         self.r.operator.move("audio_node", "picture")
         self.r.placement["audio_node"] = "picture"
         self.wait(lambda: self.r.node_states.state("audio_node") == "running", "audio_node runs on its new host")
-        states = self.r.operator.states()
+        states = self.r.states()
         self.assertIn("audio_node", states["picture"]["nodes"])
         self.assertNotIn("audio_node", states["sound"]["nodes"])
         self.r.operator.move("audio_node", "sound")

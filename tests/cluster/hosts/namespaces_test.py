@@ -47,8 +47,7 @@ class Namespaces(unittest.TestCase):
         return status.all_running(self.operator.cluster, *status.query(self.operator))
 
     def runs_at(self, node):
-        states, _ = status.query(self.operator)
-        return [host for host, s in states.items() if not isinstance(s, Exception) and node in s["nodes"]]
+        return [host for host, s in self.operator.states(patience_s=TIMEOUT_S).items() if node in s["nodes"]]
 
     def test_a_node_runs_in_a_namespace_and_moves_out_of_it(self):
         self.operator.up("git")

@@ -105,7 +105,7 @@ class Sites(unittest.TestCase):
         return found
 
     def incarnations(self):
-        return {name: node["pid"] for s in self.r.operator.states().values() for name, node in s["nodes"].items()}
+        return {name: node["pid"] for s in self.r.states().values() for name, node in s["nodes"].items()}
 
     def note(self, relay):
         return self.r.node_states.newest.get(relay, {}).get("note", "")

@@ -38,12 +38,16 @@ class LabCluster:
         self.operator.up("rehearsal")
         self.operator.wait_for_world()
         seconds = time.monotonic() - begin
-        self.placement = self.operator.placement(self.operator.states())
+        self.placement = self.operator.placement(self.states())
         self.node_states = NodeStates(self.cluster, self.run_id())
         return seconds
 
+    def states(self):
+        """{host: state} of the hosts that can be reached; waits long, because a host of a loaded machine answers late."""
+        return {host: s for host, s in self.operator.states(patience_s=PATIENCE_S).items() if not isinstance(s, Exception)}
+
     def run_id(self):
-        return next(s["run"]["run_id"] for s in self.operator.states().values() if not isinstance(s, Exception) and s["run"])
+        return next(s["run"]["run_id"] for s in self.states().values() if s["run"])
 
     def nodes_on(self, host):
         return [n for n, h in self.placement.items() if h == host]
