@@ -12,9 +12,9 @@
 
 namespace tactus::live {
 
-// Positions of the sliders of one modality; 0: no degradation.
+// Positions of the sliders of one modality; 0: no degradation. A value of the profile in force may lie beyond the range of its slider.
 struct Sliders {
-  double delay_ms = 0;  // 0 .. 2000
+  double delay_ms = 0;  // a moved slider: 0 .. 2000
   double rate_Hz = 0;   // 0, or 0.1 .. 1000
   double loss = 0;      // share, 0 .. 1
   std::optional<double> deadband{};  // share, 0 .. 1; empty: as it is

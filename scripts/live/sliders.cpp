@@ -20,6 +20,12 @@ using tinyxml2::XMLElement;
 
 constexpr const char* kEmptyProfile = "<profile name=\"live page\"/>";
 constexpr const char* kChangedSuffix = ", changed in the live page";
+// Ranges of moved sliders.
+constexpr double kMaxDelay_ms = 2000, kMinRate_Hz = 0.1, kMaxRate_Hz = 1000, kMaxDeadband = 1;
+
+void require_in_range(const char* name, bool in_range) {
+  if (!in_range) throw std::invalid_argument(std::string("\"") + name + "\" is out of range; reload the page");
+}
 
 const std::string& or_empty(const std::string& profile) {
   static const std::string empty = kEmptyProfile;
@@ -95,6 +101,7 @@ void apply_delay(XMLElement& root, const std::string& sense, double delay_ms) {
   XMLElement* const e = first_element(root, sense, "delay");
   const auto old = operator_of("delay", e).delay.value_or(sync::DelayDef{});
   if (nearly_equal(old.delay_s * 1e3, delay_ms)) return;
+  require_in_range("delay_ms", delay_ms <= kMaxDelay_ms);
   const char* kind = old.kind == sync::DelayKind::kNetwork ? " network" : "";
   // A jitter that the shorter delay cannot carry ends (sync/random/jitter.h).
   if (e != nullptr && has_value(*e, "jitter") &&
@@ -106,6 +113,7 @@ void apply_delay(XMLElement& root, const std::string& sense, double delay_ms) {
 void apply_rate(XMLElement& root, const std::string& sense, double rate_Hz) {
   const auto old = operator_of("rate", first_element(root, sense, "rate")).rate.value_or(sync::RateDef{});
   if (nearly_equal(old.rate_Hz, rate_Hz)) return;
+  require_in_range("rate_Hz", rate_Hz == 0 || (rate_Hz >= kMinRate_Hz && rate_Hz <= kMaxRate_Hz));
   const bool fits = old.phase_s > 0 && old.phase_s * rate_Hz < 1;
   set(root, sense, "rate",
       rate_Hz > 0 ? number(rate_Hz) + "Hz" + (fits ? " phase=" + number(old.phase_s * 1e3) + "ms" : "") : "");
@@ -169,6 +177,7 @@ void apply_deadband(XMLElement& root, const std::string& sense, const Sliders& s
   const sync::Predictor predictor = predict == s.choices.end() ? d.predictor : predict->second == "linear" ? sync::Predictor::kLinear : sync::Predictor::kHold;
   const double fraction = s.deadband.value_or(d.fraction);
   if (nearly_equal(d.fraction, fraction) && (d.predictor == predictor || !old)) return;
+  require_in_range("deadband", nearly_equal(d.fraction, fraction) || fraction <= kMaxDeadband);
   const bool ends = s.deadband && fraction == 0 && d.fraction > 0;
   d.fraction = fraction;
   d.predictor = predictor;

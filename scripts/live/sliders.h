@@ -18,7 +18,7 @@ namespace tactus::live {
 nlohmann::json degradation_json(const std::string& profile);
 
 // The profile with the sliders at these positions: a value that a slider has not changed stays as written, with its kind, its
-// burst and its phase. Throws as above, also for an invalid result.
+// burst and its phase. Throws as above, also for an invalid result, and for a moved slider beyond its range (Sliders).
 std::string with_sliders(const std::string& profile, const std::map<std::string, Sliders>& senses);
 
 }  // namespace tactus::live

@@ -34,8 +34,8 @@ void check_bounds(const BrowserMessage& m) {
   } else if (const auto* d = std::get_if<DegradeRequest>(&m)) {
     CHECK(d->senses.size() <= 16);
     for (const auto& [name, s] : d->senses) {
-      CHECK((s.delay_ms >= 0 && s.delay_ms <= 2000));
-      CHECK((s.rate_Hz == 0 || (s.rate_Hz >= 0.1 && s.rate_Hz <= 1000)));
+      CHECK((s.delay_ms >= 0 && s.delay_ms <= 1e9));
+      CHECK((s.rate_Hz >= 0 && s.rate_Hz <= 1e9));
       CHECK((s.loss >= 0 && s.loss <= 1));
     }
   } else if (const auto* h = std::get_if<HandTarget>(&m)) {
@@ -99,12 +99,12 @@ TEST_CASE("Malformed and out-of-range page messages are rejected with a sentence
         R"({"t":"watch","names":[1]})", R"({"t":"watch","names":["a b"]})", R"({"t":"watch","names":["a\n"]})",
         R"({"t":"degrade","clear":false,"senses":[]})", R"({"t":"degrade","senses":{}})",
         R"({"t":"degrade","clear":false,"senses":{"a\"/>":{"delay_ms":1,"rate_Hz":0,"loss":0}}})",
-        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0.05,"loss":0}}})",
-        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0,"loss":0,"deadband":1.5}}})",
+        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":-1,"loss":0}}})",
+        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0,"loss":0,"deadband":"1"}}})",
         R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0,"loss":0,"choices":["tdpa"]}}})",
         R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0,"loss":0,"choices":{"passivity":"\"/>"}}}})",
         R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0,"loss":0,"choices":{"a=\"b\"":"tdpa"}}}})",
-        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":2001,"rate_Hz":0,"loss":0}}})",
+        R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1e10,"rate_Hz":0,"loss":0}}})",
         R"({"t":"degrade","clear":false,"senses":{"audio":{"delay_ms":1,"rate_Hz":0}}})",
         R"({"t":"answer","choice":1,"number":0,"after_ns":0})", R"({"t":"answer","question":11,"choice":1,"number":0,"after_ns":0})",
         R"({"t":"answer","question":"4.11","choice":0.5,"number":0,"after_ns":0})",

@@ -110,6 +110,27 @@ TEST_CASE("All slider positions give a valid profile, which sets the sliders to 
   }
 }
 
+TEST_CASE("A value of the profile beyond its slider stays, other sliders work, and no slider moves beyond its range") {
+  const std::string beyond = R"(<profile name="far"><degrade modality="audio" delay="5s" rate="2000Hz"/>)"
+                             R"(<degrade modality="visual" rate="0.05Hz"/>)"
+                             R"(<degrade modality="haptic" stage="force" deadband="150% force"/></profile>)";
+  const nlohmann::json shown = degradation_json(beyond)["senses"];
+  std::map<std::string, Sliders> at;
+  for (const auto& [sense, s] : shown.items())
+    at[sense] = {s["delay_ms"].get<double>(), s["rate_Hz"].get<double>(), s["loss"].get<double>(), s["deadband"].get<double>()};
+  CHECK(at.at("haptic:force").deadband == Approx(1.5));
+  at["audio"].loss = 0.25;
+  const auto changed = sync::parse_profile(with_sliders(beyond, at), "changed");
+  CHECK(changed.rules[0].delay->delay_s == Approx(5));
+  CHECK(changed.rules[0].rate->rate_Hz == Approx(2000));
+  CHECK(changed.rules[0].loss->share == Approx(0.25));
+  CHECK(changed.rules[1].rate->rate_Hz == Approx(0.05));
+  CHECK(changed.rules[2].deadband->fraction == Approx(1.5));
+  for (const Sliders& moved : {Sliders{2001, 0, 0}, Sliders{0, 1001, 0}, Sliders{0, 0.05, 0}})
+    CHECK_THROWS_AS(with_sliders("", {{"audio", moved}}), std::invalid_argument);
+  CHECK_THROWS_AS(with_sliders("", {{"haptic:force", {0, 0, 0, 1.6}}}), std::invalid_argument);
+}
+
 TEST_CASE("Each stage of touch has sliders of its own, which change the rules of that stage only") {
   const std::string profile =
       "<profile name=\"stages\"><degrade modality=\"haptic\" delay=\"20ms\"/><degrade modality=\"haptic\" stage=\"force\" "
