@@ -24,5 +24,5 @@ target_link_options(lcmtypes_sanitized_test PRIVATE ${sanitizers} -fuse-ld=bfd)
 tactus_unity(lcmtypes_sanitized_test)
 # One test for all cases, because the start of a program with sanitizers takes long. Libraries without sanitizers fill containers of the tests.
 add_test(NAME "lcmtypes: all tests pass with the address and undefined behaviour sanitizers" COMMAND lcmtypes_sanitized_test)
-set_tests_properties("lcmtypes: all tests pass with the address and undefined behaviour sanitizers" PROPERTIES LABELS unit TIMEOUT 600
+set_tests_properties("lcmtypes: all tests pass with the address and undefined behaviour sanitizers" PROPERTIES LABELS simulation COST 100 TIMEOUT 600
   ENVIRONMENT ASAN_OPTIONS=detect_container_overflow=0)
