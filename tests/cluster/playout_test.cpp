@@ -84,7 +84,7 @@ TEST_CASE("The reported presentation time includes the display latency after the
   RunningCluster c;
   c.start();
   c.processes.kill("visual_node");
-  c.processes.start("visual_node", {"--set", "display_latency=0.2", "--set", "width=320", "--set", "height=240"});
+  c.processes.start("visual_node", {"--set", "display_latency=0.2"});
   CHECK(c.monitor.wait_until([&] { return c.is_running("visual_node"); }, kTimeout_s));
   request_playout(c, {"asap"});
   // Without the policy, picture and sound come within one or two frames of each other.

@@ -113,7 +113,7 @@ TEST_CASE("All slider positions give a valid profile, which sets the sliders to 
 TEST_CASE("A value of the profile beyond its slider stays, other sliders work, and no slider moves beyond its range") {
   const std::string beyond = R"(<profile name="far"><degrade modality="audio" delay="5s" rate="2000Hz"/>)"
                              R"(<degrade modality="visual" rate="0.05Hz"/>)"
-                             R"(<degrade modality="haptic" stage="force" deadband="150% force"/></profile>)";
+                             R"(<degrade modality="haptic" stage="force" deadband="150% force resend=20ms"/></profile>)";
   const nlohmann::json shown = degradation_json(beyond)["senses"];
   std::map<std::string, Sliders> at;
   for (const auto& [sense, s] : shown.items())

@@ -19,10 +19,13 @@ constexpr double kViewing_m = 0.6;
 // Standard deviation of the judged time between an action and its seen effect (design, from 20-60 ms for judged
 // order).
 constexpr double kJudgedDelaySd_s = 0.02;
+// Time constant of the approach as a share of that of the pace: the last corrections take the rest, so that the
+// slope of time over difficulty is the pace of the typical player (design).
+constexpr double kApproach = 0.75;
 constexpr double kErrorCost_s = 2.5;    // time that the typical player gives to avoid an error (design)
 // Growth of the approach's time constant for each second of noticed mismatch: between e, which damps a loop with
 // that delay critically, and 1 + e, which also makes up for the faster approach that the mismatch causes (design).
-constexpr double kSlowing = 3.2;
+constexpr double kSlowing = 3.4;
 constexpr double kRestSpeed_m_s = 0.01;  // a movement has ended below this speed
 constexpr std::uint64_t kExposureStream = 31, kTrialStream = 32;
 constexpr int kBias = kHandStates;  // the state after those of the hand
@@ -101,9 +104,10 @@ PointingSession::PointingSession(const PlayerParameters& player, const PointingD
   const double unknown =
       def.reckoning ? std::abs(belief_.noticed_s()) : belief_.believed_s() + belief_.noticed_s();
   waits_ = def.vision && believed > player.wait_threshold_s;
-  const double preferred_s = player.pace_s_bit / std::numbers::ln2;
+  const double preferred_s = kApproach * player.pace_s_bit / std::numbers::ln2;
   rate_1_s_ = 1 / (preferred_s + (waits_ ? 0 : kSlowing * unknown));
   feedback_ = approach_feedback(player, rate_1_s_, kStep_s);
+  settled_m_ = settled_sd_m(player, believed);
 }
 
 // One movement.
@@ -233,7 +237,10 @@ class PointingMovement {
     const double sd = std::sqrt(std::max(variance, 1e-12) + mismatch * mismatch);
     const double now = miss_probability(pressed[kPlace], sd, width_m_),
                  then = miss_probability(Vector(later_ * pressed)[kPlace], sd, width_m_);
-    return now < 0.5 && error_cost_s(s_.player_) * (now - then) <= kConsidered_s;
+    // Half of the certainty of a hand at rest suffices: a hand whose noise exceeds the target never has more.
+    const double attainable = 1 - miss_probability(0, s_.settled_m_, width_m_);
+    return std::abs(pressed[kPlace]) <= width_m_ / 2 && 1 - now > attainable / 2 &&
+           error_cost_s(s_.player_) * (now - then) <= kConsidered_s;
   }
 
   const PointingSession& s_;

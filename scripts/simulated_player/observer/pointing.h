@@ -8,7 +8,8 @@
 //   pace      A mismatch of the believed delay is noticed as a miss. A loop with the unknown delay r is critically
 //   damped at the rate
 //             1/(e r), so the time constant of the approach grows with |r|.
-//   stopping  It selects the target when waiting would cost more time than the errors that it avoids.
+//   stopping  It selects the target when its estimate is inside, with at least half of the certainty of a hand at
+//             rest, and waiting would cost more time than the errors that it avoids.
 //   waiting   Above the player's threshold of believed delay it moves, waits for the picture, and moves again.
 #pragma once
 
@@ -67,6 +68,7 @@ class PointingSession {
   std::uint64_t seed_;
   DelayBelief belief_;
   double rate_1_s_ = 1;
+  double settled_m_ = 0;  // scatter of the believed place at rest
   Vector feedback_;
   bool waits_ = false;
 };

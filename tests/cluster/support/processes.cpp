@@ -46,6 +46,8 @@ void Processes::start(const std::string& node, const std::vector<std::string>& o
   std::vector<std::string> command{programs() / node, "--run-id", std::to_string(run_id_), "--out", out_};
   // Tests do not open the sound card.
   if (node == "audio_node") command.insert(command.end(), {"--audio-device", "virtual"});
+  // Small pictures leave the processors to the other nodes, and to the tests beside this one.
+  if (node == "visual_node") command.insert(command.end(), {"--set", "width=320", "--set", "height=240"});
   command.insert(command.end(), options.begin(), options.end());
   spawn(node, command);
 }
