@@ -53,7 +53,8 @@ std::vector<question_t> study() {
 
 TEST_CASE(
     "The live page answers questions of a study by click, key and slider, and rejects malformed answers "
-    "and those of observer pages") {
+    "and those of observer pages",
+    "[browser]") {
   INFO("install the packages chromium, nodejs and npm, and run scripts/live/bundle --for-tests");
   const std::filesystem::path page = repository() / "scripts/live/page";
   REQUIRE(std::filesystem::exists("/usr/bin/chromium"));

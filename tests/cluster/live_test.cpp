@@ -261,7 +261,8 @@ std::int64_t sim_time_at(const std::filesystem::path& path, double at_s) {
 
 TEST_CASE(
     "Actions in the live page reach the bus, a frozen or killed browser changes nothing, and the log "
-    "can be replayed in the page") {
+    "can be replayed in the page",
+    "[browser]") {
   require_browser();
   RunScript run;
   const std::filesystem::path profile = run.folder.path() / "late_warmth.xml";

@@ -218,7 +218,7 @@ TEST_CASE("The window draws a question of a study and answers it by its keys, wh
   CHECK((answer(12).number == 6 && answer(12).choice == -1));
 
   CHECK(c.equals(still));
-  ask(13, question_t::READ, "Read this.");
+  ask(13, question_t::READ, "Read this text, and press the space bar when you have read all of it.");
   CHECK(c.differs(still, 1));
   c.xdotool({"key", "space"});
   CHECK(answer(13).choice == -1);
@@ -227,7 +227,7 @@ TEST_CASE("The window draws a question of a study and answers it by its keys, wh
   // A second window shows no questions.
   CHECK(c.equals(still));
   c.set({"questions=false"});
-  ask(14, question_t::READ, "Not here.");
+  ask(14, question_t::READ, "This question is for another window, and this one draws nothing of it.");
   c.receive_for(1);
   CHECK(mean_difference(still, c.picture()) < 1);
   c.set({"questions=true"});
