@@ -15,6 +15,7 @@ from tactus.launch.arguments import SENSES
 from tactus.refusal import Refusal, sentence_of
 from tactus.terminal import report
 
+INSPECT_S = 30        # starts an agent and reads the build; a busy host takes several seconds
 SEND_S = 600          # for a build over a slow line
 CHECK_S = 620         # agent.READ_SCENE_S and the transfer
 START_S, STOP_S = 40, 25
@@ -69,7 +70,7 @@ class Operator:
         """Starts all nodes that do not run. Skips and reports unreachable hosts; raises Refusal when one of them has sim_node or the recorder."""
         self.files = deployment.parts()
         self.identity = deployment.identity(self.files)
-        host_info = self.request_all("inspect_host", patience_s=15)
+        host_info = self.request_all("inspect_host", patience_s=INSPECT_S)
         unreachable = {h: a for h, a in host_info.items() if isinstance(a, Exception)}
         for host, error in unreachable.items():
             needed = [n for n in (WORLD, RECORDER) if self.cluster.nodes[n].host == host]
@@ -139,7 +140,7 @@ class Operator:
             packed = deployment.packed(self.files)
             self.report(f"installing this build ({len(packed) / 1e6:.0f} MB) on {', '.join(lacking)}")
             self.require_answers(self.send(lacking, "build", packed))
-            host_info |= self.require_answers(self.request_all("inspect_host", lacking, patience_s=15))
+            host_info |= self.require_answers(self.request_all("inspect_host", lacking, patience_s=INSPECT_S))
         for host, answer in ((h, host_info[h]) for h in hosts):
             if answer["missing"]:
                 raise Refusal(f"{host}: lacks {', '.join(answer['missing'])}; run on this host: apt install {' '.join(debian_packages(answer['missing']))}")
