@@ -90,6 +90,8 @@ class OverDispersedAnswers:
     def integrated(self, p):
         """(m, i, j) for probabilities (m, i, j, k)."""
         place = within((np.log(p / (1 - p)) - LOGITS[0]) / (LOGITS[1] - LOGITS[0]), 0, len(LOGITS) - 1.001)
+        if not math.isfinite(place.sum()):  # the sparse product does not check its indices
+            raise ValueError("a probability of the posterior is not a number; the fit did not converge")
         low = place.astype(np.int32)
         share = place - low
         # Interpolation and the sum over the counts are one product with a sparse matrix: two entries for each count.
