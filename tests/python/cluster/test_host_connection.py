@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts" / "python"))
 from tactus.cluster import cluster_file, host_connection
@@ -49,6 +50,15 @@ class Connections(unittest.TestCase):
                     # ssh replaces %C by 40 digits, and adds a dot and 16 letters while it connects; a socket's path has at most 107 bytes (unix(7)).
                     path = self.path(None).partition("=")[2].replace("%C", "c" * 40) + "." + "r" * 16
                     self.assertLessEqual(len(os.fsencode(path)), 107)
+
+    def test_a_host_that_neither_answers_nor_closes_its_connection_is_unreachable_in_one_sentence(self):
+        ssh = pathlib.Path(self.folder.name, "ssh")
+        ssh.write_text("#!/bin/sh\nexec sleep 60\n", encoding="utf-8")
+        ssh.chmod(0o755)
+        host = host_connection.HostConnection(cluster_file.Host("world", "ssh", "world", "", "", ""))
+        with mock.patch.dict(os.environ, PATH=f"{self.folder.name}:{os.environ['PATH']}"), mock.patch.object(host_connection, "CLOSE_S", 0.1), \
+                self.assertRaisesRegex(host_connection.Unreachable, "^world: does not answer within 0.1 s$"):
+            host.request("ping", patience_s=0.1)
 
     def test_only_the_owner_can_read_the_folder(self):
         self.assertEqual(0o700, host_connection.control_folder(None).stat().st_mode & 0o777)

@@ -4,6 +4,7 @@ answers it, so that a host needs no installation.
 Each request has a timeout; a host that does not answer in time counts as unreachable."""
 import base64
 import concurrent.futures
+import contextlib
 import hashlib
 import json
 import os
@@ -30,6 +31,7 @@ LOADER = ("import sys,json,types,base64,zlib\n"
           " m=types.ModuleType(n);sys.modules[n]=m;exec(compile(s,n+'.py','exec'),m.__dict__)\n"
           "sys.modules['tactus.cluster.agent'].main(p['request'])")
 CONNECT_S = 3
+CLOSE_S = 5
 REQUEST_S = 10
 MAX_PARALLEL = 32
 LONGEST_SENTENCE = 1000           # characters of a message of a host
@@ -132,9 +134,11 @@ class HostConnection:
         return answer
 
     def close_shared_connection(self):
-        """Closes the shared connection; the next request opens a new one."""
+        """Closes the shared connection; the next request opens a new one. A connection that does not close in time stays: the caller already
+        reports that this host does not answer."""
         if self.host.reach == "ssh":
-            subprocess.run([*self.ssh_words(self.ssh_options()), "-O", "exit", "--", self.host.address], capture_output=True, check=False, timeout=5)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                subprocess.run([*self.ssh_words(self.ssh_options()), "-O", "exit", "--", self.host.address], capture_output=True, check=False, timeout=CLOSE_S)
 
     def measure_round_trip_s(self):
         """Duration of a request and its answer, s."""

@@ -65,7 +65,10 @@ def invalid(elements):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "profile.xml"
         file.write_text("<profile>\n" + "\n".join(elements) + "\n</profile>\n", encoding="utf-8")
-        done = subprocess.run([BIN / "sync_node", "--degrade", file, "--check"], capture_output=True, text=True, errors="replace", timeout=CHECK_TIMEOUT_S, check=False)
+        try:
+            done = subprocess.run([BIN / "sync_node", "--degrade", file, "--check"], capture_output=True, text=True, errors="replace", timeout=CHECK_TIMEOUT_S, check=False)
+        except subprocess.TimeoutExpired:
+            raise Refusal(f"sync_node does not check the profiles in {CHECK_TIMEOUT_S} s; stop other programs, and repeat the command") from None
     if not done.returncode:
         return ""
     said = (done.stderr.strip().splitlines() or ["no message"])[-1]
