@@ -1,6 +1,7 @@
 #include "thermal_node/display/ticks.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::thermal {
 
@@ -32,16 +33,21 @@ Tick Ticks::next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime
   if (tick.sim_end > tick.sim_begin) {
     const auto contact = stream.integral(tick.sim_begin, tick.sim_end, tool, tool_body);
     const bool commanded_gap = contact.status == sync::SampleStatus::kStale && !silent;
-    if (!commanded_gap) {
-      contact_ = contact;
-      contact_interval_ = tick.sim_end - tick.sim_begin;
-    }
-  } else if (silent) {
-    contact_.status = sync::SampleStatus::kStale;  // paused, and now silent
+    if (!commanded_gap) hold(contact, tick.sim_end - tick.sim_begin);
+  } else if (!silent) {  // paused: the contact of that instant
+    const auto contact = stream.integral(tick.sim_end, tick.sim_end + kSettle, tool, tool_body);
+    const bool is_known = contact.status != sync::SampleStatus::kNone && contact.status != sync::SampleStatus::kStale;
+    if (is_known) hold(contact, kSettle);
   }
   tick.contact = contact_;
   tick.contact_interval = contact_interval_;
+  if (silent && tick.sim_end <= tick.sim_begin) tick.contact.status = sync::SampleStatus::kStale;
   return tick;
+}
+
+void Ticks::hold(sync::ContactIntegral contact, sync::Nanoseconds interval) {
+  contact_ = std::move(contact);
+  contact_interval_ = interval;
 }
 
 }  // namespace tactus::thermal

@@ -15,7 +15,7 @@ namespace tactus::thermal {
 struct Tick {
   sync::HostTime begin{}, end{};         // on the host clock: the skin is real and ages in host time
   sync::SimTime sim_begin{}, sim_end{};  // the rendered interval of simulated time
-  sync::ContactIntegral contact;         // over that interval; while the simulation is paused, the last one holds
+  sync::ContactIntegral contact;         // over that interval; while the simulation is paused, that of its instant
   sync::Nanoseconds contact_interval{};  // interval over which `contact` is the mean
   std::vector<contact_event_t> events;   // events that have become due, of all tools
   sync::TimeMap map;                     // from simulated to host time
@@ -33,11 +33,13 @@ class Ticks {
   static constexpr sync::Nanoseconds kMaxInterval{2'000'000'000};
 
   // now: the clock; newest_arrival: actual arrival of the newest contact snapshot; delay: of presentation. A gap in
-  // the stream while messages arrive is intended: the last contact is held.
+  // the stream while messages arrive is intended: the last contact is held. A silence makes the contact stale until messages arrive again.
   Tick next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime newest_arrival, int tool,
             int tool_body, sync::Nanoseconds delay = sync::Nanoseconds(0));
 
  private:
+  void hold(sync::ContactIntegral contact, sync::Nanoseconds interval);
+
   std::optional<sync::HostTime> end_;
   std::optional<sync::SimTime> sim_end_;
   sync::ContactIntegral contact_;

@@ -169,6 +169,82 @@ TEST_CASE("A paused contact is held and is stale when the simulation stops") {
   CHECK(ticks.next(world.stream, world.now(), world.now() - 200ms, 0, 9).contact.status == sync::SampleStatus::kStale);
 }
 
+TEST_CASE("A contact that is heard again during a pause is held as before the silence") {
+  World world;
+  Ticks ticks;
+  world.contacts = {touch(4, 1)};
+  world.run(60);
+  world.tick(ticks);
+  world.run(20);
+  world.rate = 0;
+  world.event(contact_event_t::HIT, 4, 79);  // carries the paused clock
+  for (int i = 0; i < 2; ++i) {
+    world.host_ms += 20;
+    world.tick(ticks);
+  }
+  world.host_ms += 200;
+  REQUIRE(ticks.next(world.stream, world.now(), world.now() - 200ms, 0, 9).contact.status == sync::SampleStatus::kStale);
+  const Tick heard = world.tick(ticks);
+  CHECK(heard.contact.status != sync::SampleStatus::kStale);
+  CHECK(heard.contact.force_N == Approx(1));
+}
+
+TEST_CASE("A contact that began in a silence before a pause is present in the pause") {
+  World world;
+  Ticks ticks;
+  world.run(60);
+  world.tick(ticks);
+  world.host_ms += 200;
+  REQUIRE(ticks.next(world.stream, world.now(), world.now() - 200ms, 0, 9).contact.status == sync::SampleStatus::kStale);
+  world.contacts = {touch(4, 1)};
+  world.rate = 0;
+  world.run(1);  // the simulation was paused meanwhile
+  Tick tick;
+  for (int i = 0; i < 3; ++i) {
+    world.host_ms += 20;
+    tick = world.tick(ticks);
+  }
+  CHECK(tick.sim_begin == tick.sim_end);
+  CHECK(tick.contact.status != sync::SampleStatus::kStale);
+  CHECK(tick.contact.force_N == Approx(1));
+  CHECK(tick.contact.contact_time == tick.contact_interval);
+}
+
+TEST_CASE("A touch that ended before a pause does not last for the pause") {
+  World world;
+  Ticks ticks;
+  world.contacts = {touch(4, 1)};
+  world.run(60);
+  world.tick(ticks);
+  world.run(10);
+  world.contacts.clear();
+  world.run(10);
+  world.event(contact_event_t::END, 4, 70);
+  world.rate = 0;
+  world.run(1);
+  Tick tick;
+  for (int i = 0; i < 3; ++i) {
+    world.host_ms += 20;
+    tick = world.tick(ticks);
+  }
+  REQUIRE(tick.sim_begin == tick.sim_end);
+  CHECK(tick.contact.contact_time == 0ms);
+  CHECK(tick.contact.force_N == 0);
+}
+
+TEST_CASE("A process that starts in a pause has the contact of that instant") {
+  World world;
+  Ticks ticks;
+  world.contacts = {touch(4, 1)};
+  world.rate = 0;
+  world.run(1);
+  world.tick(ticks);
+  world.host_ms += 20;
+  const Tick tick = world.tick(ticks);
+  CHECK(tick.contact.status != sync::SampleStatus::kNone);
+  CHECK(tick.contact.force_N == Approx(1));
+}
+
 TEST_CASE("A restarted simulation begins a new interval") {
   World world;
   Ticks ticks;
