@@ -268,7 +268,9 @@ TEST_CASE(
   const std::filesystem::path profile = run.folder.path() / "late_warmth.xml";
   std::ofstream(profile)
       << R"(<profile name="late warmth"><degrade modality="thermal" delay="30ms" jitter="5ms normal"/></profile>)";
-  run.start({tapping_scene(), "--live", "--degrade", profile, "--device", "external:live", "--seconds", "900",
+  // Small pictures leave the processors to the browser.
+  run.start({tapping_scene(), "--live", "--degrade", profile, "--device", "external:live", "--set",
+             "visual_node.width=320", "--set", "visual_node.height=240", "--set", "visual_node.rate=20", "--seconds", "900",
              "--out", run.out()});
   const std::string address = address_of(run.processes, "run");
   INFO(run.processes.output("run"));
