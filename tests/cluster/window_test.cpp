@@ -2,16 +2,15 @@
 // window or the server closes.
 #include <signal.h>
 
-#include <mutex>
 #include <set>
 #include <tactus/answer_t.hpp>
 #include <tactus/device_state_t.hpp>
 #include <tactus/question_t.hpp>
 #include <tactus/world_state_t.hpp>
-#include <thread>
 
 #include "sync/bus/bus.h"
 #include "tests/cluster/support/picture_cluster.h"
+#include "tests/cluster/support/question_leader.h"
 
 using namespace tactus;
 using namespace tactus::cluster;
@@ -19,32 +18,6 @@ using namespace tactus::cluster;
 namespace {
 
 constexpr int kScreenWidth = 1024, kScreenHeight = 768;  // size of the screen, pixels; the window is 640 x 480 at its upper left
-
-// Asks a question ten times a second in a thread of its own, also while the test waits for a program: a study whose question is
-// 2 s old has ended (sync/node/current_question.h).
-class QuestionLeader {
- public:
-  explicit QuestionLeader(std::int64_t run_id)
-      : bus_(sync::Identity::fresh("leader_test", run_id), {}), thread_([this](const std::stop_token& stop) { repeat(stop); }) {}
-
-  // An id of 0: no question.
-  void ask(const question_t& m) {
-    const std::lock_guard lock(mutex_);
-    question_ = m;
-  }
-
- private:
-  void repeat(const std::stop_token& stop) {
-    for (; !stop.stop_requested(); std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
-      const std::lock_guard lock(mutex_);
-      if (question_.id > 0) bus_.publish(channels::kQuestion, question_);
-    }
-  }
-  std::mutex mutex_;
-  question_t question_{};
-  sync::Bus bus_;
-  std::jthread thread_;  // last: it uses the others
-};
 
 struct Desktop : PictureCluster {
   std::string display;
