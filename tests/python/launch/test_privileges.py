@@ -2,6 +2,7 @@
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -77,7 +78,7 @@ class Rights(unittest.TestCase):
                 self.check(*rights(supervisor), privileges.KEPT)
             finally:
                 services.end_or_kill([service], 0.1)
-                holder.terminate()
+                holder.send_signal(signal.SIGHUP)  # ends also its runsv processes, which SIGTERM leaves behind
                 holder.wait()
                 # Ended supervisors may still be writing into it.
                 services.wait_until(lambda: shutil.rmtree(folder, ignore_errors=True) or not folder.exists(), 20)
