@@ -82,7 +82,7 @@ def plan(case, root, forced):
         "sim_node": ["sim_node", scene],
     }
     if case.player:
-        nodes["participant"] = ["participant", scene, "--device", "participant", "--scatter-along", "0.08", "--scatter-aside", "0.08"]
+        nodes["simulated_player"] = ["simulated_player", scene, "--device", "participant", "--scatter-along", "0.08", "--scatter-aside", "0.08"]
     if case.profile:
         for name in nodes:
             if name not in ("recorder", "sim_node"):
