@@ -126,7 +126,7 @@ struct Scenario {
 
 }  // namespace
 
-TEST_CASE("One of several hands leaves and another joins without an effect on the simulation and the remaining hand") {
+TEST_CASE("One of several hands leaves and another joins without an effect on the simulation and the remaining hand", "[exact]") {
   // Repeats the run once when the machine was too slow even before the first change: there is no baseline then.
   auto scenario = std::make_unique<Scenario>();
   for (int tries = 1; tries < 3 && figures(RunLog(scenario->c.out()), scenario->two).sim_Hz < 990; ++tries) {

@@ -125,14 +125,14 @@ struct TwoHosts {
 
 }  // namespace
 
-TEST_CASE("Two walls on two hosts show the same time and the same head pose in 99 of 100 frames") {
+TEST_CASE("Two walls on two hosts show the same time and the same head pose in 99 of 100 frames", "[exact]") {
   TwoHosts c;
   if (!c.start()) return;
   c.record_frames(100);
   c.check_agreement();
 }
 
-TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second, and both show the same state") {
+TEST_CASE("A wall keeps its rate beside another that draws ten pictures a second, and both show the same state", "[exact]") {
   TwoHosts c;
   if (!c.start({"--emulate-load", "5"})) return;  // wastes five of six periods
   c.record_frames(20);

@@ -60,6 +60,28 @@ class Connections(unittest.TestCase):
                 self.assertRaisesRegex(host_connection.Unreachable, "^world: does not answer within 0.1 s$"):
             host.request("ping", patience_s=0.1)
 
+    def requests_until_answer(self, what, failures, message):
+        """(number of connections, answer or None) of a request when the first connections fail with a message of ssh."""
+        ssh, count = pathlib.Path(self.folder.name, "ssh"), pathlib.Path(self.folder.name, "count")
+        count.write_text("", encoding="utf-8")
+        ssh.write_text(f"#!/bin/sh\necho >>{count}\n[ $(wc -l <{count}) -le {failures} ] && echo '{message}' >&2 && exit 255\n"
+                       "cat >/dev/null\n", encoding="utf-8")
+        ssh.chmod(0o755)
+        host = host_connection.HostConnection(cluster_file.Host("world", "ssh", "world", "", "", ""))
+        with mock.patch.dict(os.environ, PATH=f"{self.folder.name}:{os.environ['PATH']}"), mock.patch.object(host_connection.HostConnection, "checked", lambda _, what, out: what):
+            try:
+                answer = host.request(what)
+            except host_connection.Unreachable:
+                answer = None
+        return len(count.read_text(encoding="utf-8")), answer
+
+    def test_a_request_is_repeated_once_after_a_lost_connection_when_that_changes_nothing_more(self):
+        self.assertEqual((2, "node_states"), self.requests_until_answer("node_states", 1, ""))
+        self.assertEqual((2, "stop"), self.requests_until_answer("stop", 1, "Timeout, server world not responding."))
+        self.assertEqual((2, None), self.requests_until_answer("node_states", 2, ""))
+        self.assertEqual((1, None), self.requests_until_answer("send_command", 1, ""))
+        self.assertEqual((1, None), self.requests_until_answer("node_states", 1, "ssh: connect to host world port 22: No route to host"))
+
     def test_only_the_owner_can_read_the_folder(self):
         self.assertEqual(0o700, host_connection.control_folder(None).stat().st_mode & 0o777)
 

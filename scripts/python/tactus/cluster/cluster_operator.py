@@ -15,10 +15,10 @@ from tactus.launch.arguments import SENSES
 from tactus.refusal import Refusal, sentence_of
 from tactus.terminal import report
 
-INSPECT_S = 30        # starts an agent and reads the build; a busy host takes several seconds
+ANSWER_S = 30         # starts an agent, which may read a build; a busy host takes several seconds
 SEND_S = 600          # for a build over a slow line
 CHECK_S = 620         # agent.READ_SCENE_S and the transfer
-START_S, STOP_S = 40, 25
+START_S, STOP_S = 60, 45
 LOADING_S = 600
 SHADERS_S = 20
 LARGEST_RESULTS_BYTES = 500_000_000_000  # design: of one host, a day of all channels and videos
@@ -44,10 +44,10 @@ class Operator:
         """Fields of every request to an agent."""
         return {"cluster": self.cluster.name, "build": self.identity or "", "own_build": self.cluster.hosts[host].build}
 
-    def request(self, host, what, patience_s=10, **fields):
+    def request(self, host, what, patience_s=ANSWER_S, **fields):
         return self.connections[host].request(what, patience_s=patience_s, **self.common(host), **fields)
 
-    def request_all(self, what, hosts=None, patience_s=10, **fields):
+    def request_all(self, what, hosts=None, patience_s=ANSWER_S, **fields):
         """{host: answer or error}; callable values of the request are called with the name of the host."""
         hosts = self.connections if hosts is None else {h: self.connections[h] for h in hosts}
         made = {h: {k: v(h) if callable(v) else v for k, v in fields.items()} for h in hosts}
@@ -61,7 +61,7 @@ class Operator:
                 raise Refusal(str(answer))
         return answers
 
-    def states(self, patience_s=10):
+    def states(self, patience_s=ANSWER_S):
         return self.request_all("node_states", patience_s=patience_s)
 
     # up
@@ -70,7 +70,7 @@ class Operator:
         """Starts all nodes that do not run. Skips and reports unreachable hosts; raises Refusal when one of them has sim_node or the recorder."""
         self.files = deployment.parts()
         self.identity = deployment.identity(self.files)
-        host_info = self.request_all("inspect_host", patience_s=INSPECT_S)
+        host_info = self.request_all("inspect_host")
         unreachable = {h: a for h, a in host_info.items() if isinstance(a, Exception)}
         for host, error in unreachable.items():
             needed = [n for n in (WORLD, RECORDER) if self.cluster.nodes[n].host == host]
@@ -140,7 +140,7 @@ class Operator:
             packed = deployment.packed(self.files)
             self.report(f"installing this build ({len(packed) / 1e6:.0f} MB) on {', '.join(lacking)}")
             self.require_answers(self.send(lacking, "build", packed))
-            host_info |= self.require_answers(self.request_all("inspect_host", lacking, patience_s=INSPECT_S))
+            host_info |= self.require_answers(self.request_all("inspect_host", lacking))
         for host, answer in ((h, host_info[h]) for h in hosts):
             if answer["missing"]:
                 raise Refusal(f"{host}: lacks {', '.join(answer['missing'])}; run on this host: apt install {' '.join(debian_packages(answer['missing']))}")

@@ -32,6 +32,9 @@ LOADER = ("import sys,json,types,base64,zlib\n"
           "sys.modules['tactus.cluster.agent'].main(p['request'])")
 CONNECT_S = 3
 CLOSE_S = 5
+# Requests that change nothing more when they are repeated. A host that is too busy to answer ssh for 3 s loses its connection, so they are sent again.
+REPEATABLE = ("inspect_host", "node_states", "logs", "stop", "end_supervisor")
+NOT_CONNECTED = "connect to host"  # of the message of ssh when there was no connection
 REQUEST_S = 10
 MAX_PARALLEL = 32
 LONGEST_SENTENCE = 1000           # characters of a message of a host
@@ -41,6 +44,10 @@ LONGEST_SOCKET_FOLDER = 40        # bytes: control_folder adds 9, ssh 58 to the 
 
 class Unreachable(Exception):
     """The host cannot be reached; one sentence."""
+
+
+class ConnectionLost(Unreachable):
+    """The connection broke before the answer; one sentence."""
 
 
 class Failed(Exception):
@@ -99,6 +106,15 @@ class HostConnection:
     def request(self, what, patience_s=REQUEST_S, data=None, to=None, largest_bytes=LARGEST_ANSWER_BYTES, **fields):
         """The checked answer of the agent to a request. data: bytes to send with it; to: file for the output, at most largest_bytes, then the
         result is None. Raises Unreachable or Failed."""
+        end_s = time.monotonic() + patience_s
+        try:
+            return self.request_once(what, patience_s, data, to, largest_bytes, fields)
+        except ConnectionLost:
+            if what not in REPEATABLE:
+                raise
+        return self.request_once(what, max(CONNECT_S, end_s - time.monotonic()), data, to, largest_bytes, fields)
+
+    def request_once(self, what, patience_s, data, to, largest_bytes, fields):
         modules = {name: path.read_text(encoding="utf-8") for name, path in MODULES.items()}
         request_fields = {"what": what, "folder": self.host.folder, **fields}
         line = base64.b64encode(zlib.compress(json.dumps({"modules": modules, "request": request_fields}).encode())) + b"\n"
@@ -114,7 +130,8 @@ class HostConnection:
             raise Failed(f"{self.host.name}: its answer is longer than {largest_bytes // 1_000_000} MB; check this host") from None
         error_text = err.strip()
         if process.returncode == 255 and self.host.reach == "ssh" or process.returncode == 127:
-            raise Unreachable(f"{self.host.name}: cannot be reached ({last_line(error_text)}); try: {shlex.join(self.command_line(['true'])[:1] + [self.host.address, 'true'])}")
+            kind = ConnectionLost if self.host.reach == "ssh" and NOT_CONNECTED not in error_text else Unreachable
+            raise kind(f"{self.host.name}: cannot be reached ({last_line(error_text)}); try: {shlex.join(self.command_line(['true'])[:1] + [self.host.address, 'true'])}")
         if process.returncode != 0:
             raise Failed(f"{self.host.name}: {last_line(error_text)}")
         return None if to is not None else self.checked(what, out)
