@@ -23,9 +23,11 @@ inline constexpr double kPeriod_s = 0.5;                 // period of the taps o
 
 // Figures of the simulation and of the hand that stays over a span.
 struct Figures {
-  double sim_Hz = 0, hand_Hz = 0;                     // rate of the touch models for that hand, rate of its loop
+  // Rate of the touch models for that hand, and of its loop, on a machine that delays no loop: both are loops of 1000 Hz.
+  double sim_Hz = 0, hand_Hz = 0;
   double sim_step_p50_ms = 0, sim_step_p99_ms = 0;    // from one touch model to the next
   double hand_step_p50_ms = 0, hand_step_p99_ms = 0;  // from one tool state to the next
+  double machine_p99_ms = 0;                          // as in Span
   double age_p50_ms = 0, age_p90_ms = 0;  // age of the newest touch model, as that hand reports it 10 times per second
   double felt_p50_ms = 0;                 // delay from a hit to its vibration
   std::vector<double> force_N;            // by ms of the repeated path, median
@@ -66,8 +68,10 @@ inline Figures figures_of_span(const RunLog& log, const Span& span) {
           event_ns.contains(p.event_id))
         delays_ms.push_back(static_cast<double>(p.presented_ns - event_ns.at(p.event_id)) * 1e-6);
   });
-  f.sim_Hz = static_cast<double>(steps.size()) / span.seconds();
-  f.hand_Hz = static_cast<double>(ticks.size()) / span.seconds();
+  f.machine_p99_ms = span.machine_p99_ms;
+  const double slowness = span.machine_Hz > 0 ? 1000 / span.machine_Hz : 1;
+  f.sim_Hz = std::min(1000.0, slowness * static_cast<double>(steps.size()) / span.seconds());
+  f.hand_Hz = std::min(1000.0, slowness * static_cast<double>(ticks.size()) / span.seconds());
   f.sim_step_p50_ms = quantile(steps_ms(steps), 0.5), f.sim_step_p99_ms = quantile(steps_ms(steps), 0.99);
   f.hand_step_p50_ms = quantile(steps_ms(ticks), 0.5), f.hand_step_p99_ms = quantile(steps_ms(ticks), 0.99);
   f.age_p50_ms = quantile(ages, 0.5), f.age_p90_ms = quantile(ages, 0.9);
@@ -91,7 +95,7 @@ inline Figures figures(const RunLog& log, const std::vector<Span>& spans) {
     f.*rate = quantile(values([&](const Figures& g) { return g.*rate; }), 1);
   for (const auto time :
        {&Figures::sim_step_p50_ms, &Figures::sim_step_p99_ms, &Figures::hand_step_p50_ms,
-        &Figures::hand_step_p99_ms, &Figures::age_p50_ms, &Figures::age_p90_ms, &Figures::felt_p50_ms})
+        &Figures::hand_step_p99_ms, &Figures::machine_p99_ms, &Figures::age_p50_ms, &Figures::age_p90_ms, &Figures::felt_p50_ms})
     f.*time = quantile(values([&](const Figures& g) { return g.*time; }), 0);
   for (std::size_t ms = 0; ms < each.front().force_N.size(); ++ms)
     f.force_N.push_back(quantile(values([&](const Figures& g) { return g.force_N[ms]; }), 0.5));
@@ -115,7 +119,7 @@ inline std::string to_text(const Figures& f) {
   out << "sim " << f.sim_Hz << " Hz, step " << f.sim_step_p50_ms << " / " << f.sim_step_p99_ms
       << " ms (p50 / p99); hand " << f.hand_Hz << " Hz, tick " << f.hand_step_p50_ms << " / " << f.hand_step_p99_ms
       << " ms; touch model " << f.age_p50_ms << " / " << f.age_p90_ms << " ms old (p50 / p90); felt after "
-      << f.felt_p50_ms << " ms; peak " << f.peak_N() << " N\n";
+      << f.felt_p50_ms << " ms; peak " << f.peak_N() << " N; an empty loop " << f.machine_p99_ms << " ms (p99)\n";
   return out.str();
 }
 
