@@ -15,7 +15,7 @@ namespace tactus::cluster {
 // A span of CLOCK_MONOTONIC, ns.
 struct Span {
   std::int64_t from_ns, to_ns;
-  // What the machine allowed an empty loop of 1000 Hz meanwhile: its rate, and the 99th percentile of its steps. 0: not measured.
+  // Of an empty loop of 1000 Hz in the same time: its rate, and the 99th percentile of its steps. 0: not measured.
   double machine_Hz = 0, machine_p99_ms = 0;
   bool contains(std::int64_t ns) const { return ns >= from_ns && ns < to_ns; }
   double seconds() const { return static_cast<double>(to_ns - from_ns) * 1e-9; }
