@@ -34,7 +34,7 @@ Tick Ticks::next(sync::ContactStream& stream, sync::HostTime now, sync::HostTime
     const auto contact = stream.integral(tick.sim_begin, tick.sim_end, tool, tool_body);
     const bool commanded_gap = contact.status == sync::SampleStatus::kStale && !silent;
     if (!commanded_gap) hold(contact, tick.sim_end - tick.sim_begin);
-  } else if (!silent) {  // paused: the contact of that instant
+  } else if (!silent && map->rate == 0) {  // paused: the contact of that instant
     const auto contact = stream.integral(tick.sim_end, tick.sim_end + kSettle, tool, tool_body);
     const bool is_known = contact.status != sync::SampleStatus::kNone && contact.status != sync::SampleStatus::kStale;
     if (is_known) hold(contact, kSettle);

@@ -66,6 +66,12 @@ struct World {
     }
   }
   Tick tick(Ticks& ticks) { return ticks.next(stream, now(), now(), 0, 9); }
+  // The last of several ticks, one each 20 ms, in which no message arrives.
+  Tick last_of(int count, Ticks& ticks) {
+    for (; count > 1; --count) host_ms += 20, tick(ticks);
+    host_ms += 20;
+    return tick(ticks);
+  }
 };
 
 contact_t touch(std::int64_t id, float force_N) {
@@ -178,10 +184,7 @@ TEST_CASE("A contact that is heard again during a pause is held as before the si
   world.run(20);
   world.rate = 0;
   world.event(contact_event_t::HIT, 4, 79);  // carries the paused clock
-  for (int i = 0; i < 2; ++i) {
-    world.host_ms += 20;
-    world.tick(ticks);
-  }
+  world.last_of(2, ticks);
   world.host_ms += 200;
   REQUIRE(ticks.next(world.stream, world.now(), world.now() - 200ms, 0, 9).contact.status == sync::SampleStatus::kStale);
   const Tick heard = world.tick(ticks);
@@ -199,11 +202,7 @@ TEST_CASE("A contact that began in a silence before a pause is present in the pa
   world.contacts = {touch(4, 1)};
   world.rate = 0;
   world.run(1);  // the simulation was paused meanwhile
-  Tick tick;
-  for (int i = 0; i < 3; ++i) {
-    world.host_ms += 20;
-    tick = world.tick(ticks);
-  }
+  const Tick tick = world.last_of(3, ticks);
   CHECK(tick.sim_begin == tick.sim_end);
   CHECK(tick.contact.status != sync::SampleStatus::kStale);
   CHECK(tick.contact.force_N == Approx(1));
@@ -222,14 +221,29 @@ TEST_CASE("A touch that ended before a pause does not last for the pause") {
   world.event(contact_event_t::END, 4, 70);
   world.rate = 0;
   world.run(1);
-  Tick tick;
-  for (int i = 0; i < 3; ++i) {
-    world.host_ms += 20;
-    tick = world.tick(ticks);
-  }
+  const Tick tick = world.last_of(3, ticks);
   REQUIRE(tick.sim_begin == tick.sim_end);
   CHECK(tick.contact.contact_time == 0ms);
   CHECK(tick.contact.force_N == 0);
+}
+
+TEST_CASE("While a growing delay holds the presentation, the contact of the last interval is held") {
+  World world;
+  Ticks ticks;
+  world.contacts = {touch(4, 1)};
+  world.run(60);
+  world.tick(ticks);
+  world.run(10);
+  world.contacts.clear();
+  world.run(10);
+  world.event(contact_event_t::END, 4, 70);
+  const Tick last = world.tick(ticks);
+  REQUIRE(last.contact.contact_time > 0ms);
+  world.run(20);
+  const Tick held = ticks.next(world.stream, world.now(), world.now(), 0, 9, 40ms);
+  REQUIRE(held.sim_begin == held.sim_end);
+  CHECK(held.contact.contact_time == last.contact.contact_time);
+  CHECK(held.contact_interval == last.contact_interval);
 }
 
 TEST_CASE("A process that starts in a pause has the contact of that instant") {
@@ -238,9 +252,7 @@ TEST_CASE("A process that starts in a pause has the contact of that instant") {
   world.contacts = {touch(4, 1)};
   world.rate = 0;
   world.run(1);
-  world.tick(ticks);
-  world.host_ms += 20;
-  const Tick tick = world.tick(ticks);
+  const Tick tick = world.last_of(2, ticks);
   CHECK(tick.contact.status != sync::SampleStatus::kNone);
   CHECK(tick.contact.force_N == Approx(1));
 }
