@@ -30,10 +30,9 @@ struct Bodies {
     twists.push_back({draw(), draw()});
   }
   void touch(int a, int b, double push, double gap = 0) {
-    ContactPoint p;
+    ContactPoint& p = rows.points.emplace_back();
     p.a = a, p.b = b;
     p.gap_m = gap;
-    rows.points.push_back(p);
     pushed.push_back(push);
   }
   void correct() {
