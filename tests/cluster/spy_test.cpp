@@ -10,7 +10,7 @@ using nlohmann::json;
 
 namespace {
 
-const json& channel(const json& all, const std::string& name) {
+const json& channel(const json& all, std::string_view name) {
   for (const json& c : all["channels"])
     if (c["channel"] == name) return c;
   FAIL("no channel " << name);
