@@ -172,19 +172,52 @@ class GapsDetector : public Detector, public NearestFirstDetector {
     const bool box = !has_triangles(a.kind);
     const Isometry3d at = box ? pose_a * a.offset : pose_a;
     contact_.query(*a.layers, at, *b.layers, pose_b, {reach_m, kEqualShare * reach_m}, found_);
-    if (found_.pierced && box) return gaps::convex_mesh(a.convex, at, *b.tree, pose_b, reach_m, out);
+    const bool pierced = found_.pierced, flush = any_flush(*a.layers, at, *b.layers, pose_b);
+    const bool told = std::any_of(found_.pairs.begin(), found_.pairs.end(), [](const PointPair& p) { return p.pierced; });
+    add_found(a, at, b, pose_b, pierced || flush, out);
+    if (flush || (pierced && !told)) add_overlap_of_equals(a, at, b, pose_b, reach_m, out);
+    const bool deep = std::any_of(out.begin(), out.end(), [](const PointPair& p) { return p.gap_m < -gaps::kMaxOriented_m; });
+    if (!box || !deep) return;
+    out.clear();
+    gaps::convex_mesh(a.convex, at, *b.tree, pose_b, reach_m, out);
+  }
+
+  // Bodies of equal size that overlap exactly on each other have no edge that passes inside a face. They have one when they
+  // are moved aside a little, by less than the gap that contacts keep.
+  void add_overlap_of_equals(const GapShape& a, const Isometry3d& pose_a, const GapShape& b, const Isometry3d& pose_b,
+                             double reach_m, std::vector<PointPair>& out) {
+    const std::size_t before = out.size();
+    const Isometry3d aside = Eigen::Translation3d(gaps::kFlush_m * Eigen::Vector3d(1.1, 1.7, 1.4)) * pose_b;
+    contact_.query(*a.layers, pose_a, *b.layers, aside, {reach_m, kEqualShare * reach_m}, found_);
+    add_found(a, pose_a, b, aside, true, out);
+    const auto added = out.begin() + static_cast<std::ptrdiff_t>(before);
+    out.erase(std::remove_if(added, out.end(), [](const PointPair& p) { return p.gap_m >= -2 * gaps::kFlush_m; }), out.end());
+    if (out.size() > before) out.erase(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(before));
+  }
+
+  // Appends the contacts of the pairs that were found. overlap: the bodies may overlap.
+  void add_found(const GapShape& a, const Isometry3d& pose_a, const GapShape& b, const Isometry3d& pose_b, bool overlap,
+                 std::vector<PointPair>& out) {
     for (PointPair& p : found_.pairs) {
       const Triangle &of_a = a.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_a)],
                      &of_b = b.layers->tree.triangles()[static_cast<std::size_t>(p.triangle_b)];
       if (p.pierced)
-        gaps::resolve_piercing(gaps::moved(of_a, at), gaps::moved(of_b, pose_b), p);
-      else if (!gaps::is_contact({*a.tree, at, of_a}, {*b.tree, pose_b, of_b}, p))
+        gaps::resolve_piercing(gaps::moved(of_a, pose_a), gaps::moved(of_b, pose_b), p);
+      else if (!gaps::is_contact({*a.tree, pose_a, of_a}, {*b.tree, pose_b, of_b}, p))
         continue;
-      else if (p.gap_m < gaps::kMaxOriented_m && !gaps::orient(gaps::moved(of_a, at), gaps::moved(of_b, pose_b), found_.pierced, p))
+      else if (p.gap_m < gaps::kMaxOriented_m && !gaps::orient(gaps::moved(of_a, pose_a), gaps::moved(of_b, pose_b), overlap, p))
         continue;
-      if (box) p.triangle_a = -1;
+      if (!has_triangles(a.kind)) p.triangle_a = -1;
       out.push_back(p);
     }
+  }
+
+  // Whether two faces with the same normal touch: sides of bodies of equal size.
+  bool any_flush(const ContactMesh& a, const Isometry3d& pose_a, const ContactMesh& b, const Isometry3d& pose_b) const {
+    return std::any_of(found_.pairs.begin(), found_.pairs.end(), [&](const PointPair& p) {
+      return p.gap_m <= gaps::kFlush_m && gaps::are_flush(a.tree.triangles()[static_cast<std::size_t>(p.triangle_a)], pose_a,
+                                                          b.tree.triangles()[static_cast<std::size_t>(p.triangle_b)], pose_b);
+    });
   }
 
   std::shared_ptr<MeshTrees> trees_;

@@ -18,6 +18,10 @@ namespace {
 // A point closer than this to a triangle lies on it. A point is nearer than another by more than this, m: a million
 // times the rounding of a metre.
 constexpr double kOn_m = 1e-9;
+// Surfaces closer than this touch, m: a tenth of the gap that contacts keep. Design.
+constexpr double kTouchingFaces_m = kFlush_m;
+// Faces within 0.8 degrees have the same normal. Cosine.
+constexpr double kSameNormal = 0.9999;
 // Depth up to which a vertex behind a face that faces it is an overlap: where an edge passes through a face, and where
 // none does, as for boxes of equal size on each other, m. Design values: the overlap of a scene that is placed by eye;
 // far less than the thinnest walls.
@@ -111,6 +115,10 @@ bool is_contact(const MeshSide& a, const MeshSide& b, const PointPair& p) {
   return (over_a || around(a, p.on_b_m, p.on_a_m)) && (over_b || around(b, p.on_a_m, p.on_b_m));
 }
 
+bool are_flush(const Triangle& a, const Isometry3d& pose_a, const Triangle& b, const Isometry3d& pose_b) {
+  return (pose_a.linear() * a.normal).dot(pose_b.linear() * b.normal) > kSameNormal;
+}
+
 Triangle moved(const Triangle& t, const Isometry3d& pose) {
   Triangle m = t;
   for (Vector3d& v : m.v) v = pose * v;
@@ -126,7 +134,7 @@ bool orient(const Triangle& a, const Triangle& b, bool pierced, PointPair& p) {
     p.gap_m = -p.gap_m;
     return true;
   }
-  if (p.gap_m > kOn_m) return true;
+  if (p.gap_m > kTouchingFaces_m) return true;
   if (out_of_a < -kBeyond || into_b < -kBeyond) return false;
   const auto beyond = [&](const Triangle& t, const Vector3d& on, double side) {
     return std::any_of(std::begin(t.v), std::end(t.v), [&](const Vector3d& v) { return side * p.normal.dot(v - on) > kBeyond * (v - on).norm() + kOn_m; });
@@ -135,7 +143,7 @@ bool orient(const Triangle& a, const Triangle& b, bool pierced, PointPair& p) {
 }
 
 // The least translation that separates the two triangles: along a face, or across two edges that cross (the separating
-// axes of two triangles). Its direction points out of a and into b.
+// axes of two triangles). Its direction points out of a and into b. Edges inside a flat face are none of the mesh.
 void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair) {
   double least = std::numeric_limits<double>::max();
   Vector3d along = Vector3d::UnitZ();
@@ -143,15 +151,13 @@ void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair) {
     const double size = n.norm();
     if (!(size > kParallelEdges)) return;
     n /= size;
-    const double out = n.dot(a.normal - b.normal);
-    if (out < 0) n = -n;
-    if (n.dot(a.normal) < -kBeyond || n.dot(b.normal) > kBeyond) return;
-    double high = -std::numeric_limits<double>::max(), low = -high;
-    for (const Vector3d& v : a.v) high = std::max(high, n.dot(v - pair.on_a_m));
-    for (const Vector3d& v : b.v) low = std::min(low, n.dot(v - pair.on_a_m));
-    if (high - low < least) {
-      least = high - low;
-      along = n;
+    // Along two side faces both ways are possible.
+    for (const Vector3d& way : {n, Vector3d(-n)}) {
+      if (way.dot(a.normal) < -kBeyond || way.dot(b.normal) > kBeyond) continue;
+      double high = -std::numeric_limits<double>::max(), low = -high;
+      for (const Vector3d& v : a.v) high = std::max(high, way.dot(v - pair.on_a_m));
+      for (const Vector3d& v : b.v) low = std::min(low, way.dot(v - pair.on_a_m));
+      if (high - low < least) least = high - low, along = way;
     }
   };
   consider(a.normal);
@@ -159,7 +165,7 @@ void resolve_piercing(const Triangle& a, const Triangle& b, PointPair& pair) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const Vector3d x = a.v[(i + 1) % 3] - a.v[i], y = b.v[(j + 1) % 3] - b.v[j];
-      if (x.norm() > 0 && y.norm() > 0) consider(x.normalized().cross(y.normalized()));
+      if (!a.inner[i] && !b.inner[j] && x.norm() > 0 && y.norm() > 0) consider(x.normalized().cross(y.normalized()));
     }
   pair.normal = along;
   pair.gap_m = least < std::numeric_limits<double>::max() ? -std::max(0.0, least) : 0;

@@ -43,6 +43,11 @@ struct MeshSide {
 // Whether a pair of separated triangles, world frame, is a contact.
 bool is_contact(const MeshSide& a, const MeshSide& b, const PointPair& p);
 
+// Distance up to which the sides of two bodies are one plane, m.
+inline constexpr double kFlush_m = 1e-6;
+// Whether two triangles, each in the frame of its mesh, have the same normal.
+bool are_flush(const Triangle& a, const Eigen::Isometry3d& pose_a, const Triangle& b, const Eigen::Isometry3d& pose_b);
+
 Triangle moved(const Triangle& t, const Eigen::Isometry3d& pose);  // leaves the edge directions unchanged
 // Sets normal and gap of a pair of intersecting triangles, world frame, to the shortest translation that separates them:
 // along a face normal, or across two edges.

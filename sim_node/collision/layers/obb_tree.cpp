@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim_node/collision/layers/inner_edges.h"
+
 namespace tactus::sim {
 namespace {
 
@@ -28,7 +30,7 @@ struct Box {
 };
 
 Triangle triangle_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  Triangle t{{a, b, c}, Vector3d::Zero(), {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}};
+  Triangle t{{a, b, c}, Vector3d::Zero(), {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}, {}};
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   // The cross product at the corner between the two shorter edges is the most accurate.
   const Vector3d n = longest == (b - a).squaredNorm()   ? (a - c).cross(b - c)
@@ -212,6 +214,7 @@ ObbTree::ObbTree(std::span<const Vector3d> vertices, std::span<const int> indice
     triangles_.push_back(triangle_of(*v[0], *v[1], *v[2]));
   }
   if (triangles_.empty()) return;
+  mark_inner_edges(triangles_);
   const Builder builder(triangles_);
   origin_ = builder.boxes[0].centre;
   for (const Triangle& t : triangles_)

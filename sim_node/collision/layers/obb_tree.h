@@ -15,6 +15,8 @@ struct Triangle {
   Eigen::Vector3d normal;  // unit, by the order of the vertices; zero for zero area
   // Unit vectors in the plane, normal to the edges v[i] v[i+1], inward; zero for zero area.
   Eigen::Vector3d inward[3];
+  // Whether the edge v[i] v[i+1] is inside a flat face, which continues beyond it.
+  bool inner[3] = {false, false, false};
 };
 
 // Immutable after construction: any number of threads may query one tree.

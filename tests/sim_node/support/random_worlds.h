@@ -24,7 +24,10 @@ struct RandomWorld {
   WorldDef world;
   double seconds = 1;
   Expectation expectation = Expectation::kMoves;
-  bool touching = false;  // bodies may touch or overlap at the start
+  bool touching = false;  // bodies may touch or overlap at the start, by overlap_m
+  // Slope of bodies that rest without friction: supports settle by different gaps, so what stands on them slides.
+  double slope = 0;
+  double overlap_m = 0;
 };
 
 inline const std::vector<std::string>& world_families() {
@@ -176,18 +179,21 @@ inline RandomWorld supports(Maker& m) {
   m.restitution = 0;
   m.plane({0, 0, 1});
   const int posts = 2 + m.pick(3);
-  const double height = m.draw(0.05, 0.15);
+  const double height = m.draw(0.05, 0.15), apart = 0.6 / (posts - 1);
+  int fixed = 0;
   for (int i = 0; i < posts; ++i) {
-    const double x = -0.3 + 0.6 * i / (posts - 1);
+    const double x = -0.3 + apart * i;
     if (m.pick(2))
-      m.block({0.04, 0.3, height}, m.pose({x, 0, height / 2}));
+      m.block({0.04, 0.3, height}, m.pose({x, 0, height / 2})), ++fixed;
     else
       m.box(m.draw_log(0.05, 5), {0.08, 0.1, height - kGap_m}, m.pose({x, 0, height / 2 + kGap_m / 2}));
   }
   const Vector3d plank(0.7, 0.1, 0.03);
   m.box(m.draw_log(0.1, 10), plank, m.pose({0, 0, height + plank.z() / 2 + kGap_m}));
   if (m.pick(2)) m.box(m.draw_log(0.1, 20), {0.1, 0.08, 0.1}, m.pose({m.draw(-0.15, 0.15), 0, height + plank.z() + 0.05 + 2 * kGap_m}));
-  return {m.world, 2, Expectation::kRests};
+  // A post that moves has a gap more below it than a fixed one.
+  const bool even = fixed == 0 || fixed == posts;
+  return {m.world, 2, Expectation::kRests, false, m.friction > 0 || even ? 0 : kGap_m / apart};
 }
 
 inline RandomWorld stack(Maker& m) {
@@ -262,7 +268,7 @@ inline RandomWorld touching(Maker& m) {
     add(m.draw_log(0.3, 3), {s, s, 0.1}, m.pose({0, 0, z + 0.05 - (i || !floats ? overlap : 0)}));
     z += 0.1 - (i || !floats ? overlap : 0);
   }
-  return {m.world, 1, Expectation::kRests, true};
+  return {m.world, 1, Expectation::kRests, true, 0, overlap};
 }
 
 // One body strikes a wall or another one: restitution with friction.
