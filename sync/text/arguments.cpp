@@ -2,14 +2,41 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <cstdlib>
 #include <sstream>
 #include <utility>
 
 namespace tactus::sync {
+namespace {
+
+// CLI::Range, whose sentence differs between versions of CLI11.
+template <class Number>
+CLI::Validator in_range(Number min, Number max) {
+  CLI::Validator range = CLI::Range(min, max);
+  const auto check = [range, min, max](std::string& value) {
+    std::ostringstream refusal;
+    if (!range(value).empty()) refusal << "Value " << value << " not in range " << min << " to " << max;
+    return refusal.str();
+  };
+  return {check, range.get_description()};
+}
+
+// CLI11 2.4 leaves the default when a variable of the environment is not valid, and says nothing. Throws CLI::ParseError.
+void refuse_variables(CLI::App& app) {
+  for (CLI::Option* option : app.get_options([](CLI::Option* o) { return o->count() == 0 && !o->get_envname().empty(); })) {
+    const char* value = std::getenv(option->get_envname().c_str());
+    if (!value || !*value) continue;
+    option->add_result(value);
+    option->run_callback();
+  }
+  for (CLI::App* command : app.get_subcommands()) refuse_variables(*command);
+}
+
+}  // namespace
 
 Argument Argument::required() const { return Argument(option_->required()); }
-Argument Argument::range(int min, int max) const { return Argument(option_->check(CLI::Range(min, max))); }
-Argument Argument::range(double min, double max) const { return Argument(option_->check(CLI::Range(min, max))); }
+Argument Argument::range(int min, int max) const { return Argument(option_->check(in_range(min, max))); }
+Argument Argument::range(double min, double max) const { return Argument(option_->check(in_range(min, max))); }
 Argument Argument::positive() const { return Argument(option_->check(CLI::PositiveNumber)); }
 Argument Argument::one_of(const std::vector<std::string>& words) const { return Argument(option_->check(CLI::IsMember(words))); }
 Argument Argument::existing_file() const { return Argument(option_->check(CLI::ExistingFile)); }
@@ -65,6 +92,7 @@ std::string Arguments::command() const { return app_->get_subcommands().front()-
 std::optional<std::string> Arguments::parse(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);
+    refuse_variables(*app_);
   } catch (const CLI::CallForHelp& e) {
     std::ostringstream help;
     app_->exit(e, help);

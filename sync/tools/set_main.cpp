@@ -50,7 +50,8 @@ int main(int argc, char** argv) try {
   sync::add_bus_options(app, bus_options);
   app.add_option("--run-id", run_id, "number of the cluster run").environment("TACTUS_RUN_ID").show_default();
   app.add_option("NODE", node, "name in its health: haptic_node, or its --name").required();
-  app.add_option("NAME=VALUE", words, "as in a scene; docs/settings.md lists the settings that can change").required();
+  // CLI11 2.4 refuses a name with an equals sign.
+  app.add_option("SETTING", words, "NAME=VALUE, as in a scene; docs/settings.md lists the settings that can change").required();
   sync::parse_or_exit(app, "set", argc, argv);
   setting_change_t change = change_of(node, words);
 

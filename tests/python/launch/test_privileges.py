@@ -54,7 +54,8 @@ class Rights(unittest.TestCase):
     @unittest.skipIf(os.geteuid() != 0, "only root can become another user")
     def test_an_ordinary_user_has_none_also_in_the_user_namespace_of_a_private_network(self):
         as_user = ["setpriv", "--reuid", str(ANY_USER), "--regid", str(ANY_USER), "--clear-groups"]
-        self.assertEqual(set(), self.status_of(*as_user, *privileges.words(), *STATUS)[0]["CapEff"])
+        # setpriv of util-linux 2.41 refuses to limit what programs of root gain, if it is not root.
+        self.assertEqual(set(), self.status_of(*as_user, *privileges.words(bounding=False), *STATUS)[0]["CapEff"])
         space = ["unshare", "--user", "--map-current-user", "--keep-caps"]
         if subprocess.run([*as_user, *space, "true"], capture_output=True, check=False).returncode:
             self.skipTest("this system allows no user namespace")

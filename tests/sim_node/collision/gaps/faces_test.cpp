@@ -48,6 +48,19 @@ TEST_CASE("Two edges that barely cross are separated across the edges") {
   CHECK(std::abs(p.normal.z()) == Approx(1).epsilon(1e-9));
 }
 
+TEST_CASE("Two sides that cross just below a top are separated upwards, along the edge of the top") {
+  // A block 1 m high, and a wider box that is 0.1 mm below its top.
+  const Triangle wide = triangle_of({-0.1, -0.1, -1e-4}, {0.1, -0.1, -1e-4}, {0.1, -0.1, 0.1});
+  REQUIRE(wide.normal.y() == Approx(-1));
+  const Triangle top = triangle_of({-0.05, -0.5, 0}, {-0.05, 0.5, 0}, {-0.05, 0.5, -1});
+  PointPair p;
+  p.on_a_m = p.on_b_m = Vector3d(-0.05, -0.1, 0);
+  p.pierced = true;
+  gaps::resolve_piercing(top, wide, p);
+  CHECK(p.gap_m == Approx(-1e-4).epsilon(1e-3));
+  CHECK(p.normal.z() == Approx(1).epsilon(1e-9));
+}
+
 TEST_CASE("A corner slightly behind a face that faces it overlaps, and a corner beside a touching face is no contact") {
   const Triangle top = triangle_of({-1, -1, 0}, {1, -1, 0}, {0, 1, 0}), bottom = triangle_of({-0.1, -0.1, -1e-5}, {0, 0.1, -1e-5}, {0.1, -0.1, -1e-5});
   REQUIRE(top.normal.z() == Approx(1));
