@@ -1,6 +1,7 @@
 // Detector for every pair of shapes, with gaps. Balls and planes use closed forms, convex shapes use faces and
 // nearest points, meshes are tested triangle by triangle, and meshes against meshes and boxes use the three layers.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -186,13 +187,22 @@ class GapsDetector : public Detector, public NearestFirstDetector {
   // are moved aside a little, by less than the gap that contacts keep.
   void add_overlap_of_equals(const GapShape& a, const Isometry3d& pose_a, const GapShape& b, const Isometry3d& pose_b,
                              double reach_m, std::vector<PointPair>& out) {
-    const std::size_t before = out.size();
-    const Isometry3d aside = Eigen::Translation3d(gaps::kFlush_m * Eigen::Vector3d(1.1, 1.7, 1.4)) * pose_b;
+    const auto before = static_cast<std::ptrdiff_t>(out.size());
+    const Eigen::Vector3d by_m = gaps::kFlush_m * Eigen::Vector3d(1.1, 1.7, 1.4);
+    const Isometry3d aside = Eigen::Translation3d(by_m) * pose_b;
     contact_.query(*a.layers, pose_a, *b.layers, aside, {reach_m, kEqualShare * reach_m}, found_);
     add_found(a, pose_a, b, aside, true, out);
-    const auto added = out.begin() + static_cast<std::ptrdiff_t>(before);
-    out.erase(std::remove_if(added, out.end(), [](const PointPair& p) { return p.gap_m >= -2 * gaps::kFlush_m; }), out.end());
-    if (out.size() > before) out.erase(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(before));
+    const auto added = out.begin() + before;
+    std::for_each(added, out.end(), [&](PointPair& p) {
+      const double by = by_m.dot(p.normal);
+      p.gap_m -= by;
+      p.on_b_m -= by * p.normal;
+    });
+    const bool shallow = std::all_of(added, out.end(), [](const PointPair& p) { return p.gap_m > -gaps::kMaxOriented_m; });
+    out.erase(std::remove_if(added, out.end(), [&](const PointPair& p) { return !shallow || p.gap_m >= -2 * gaps::kFlush_m; }), out.end());
+    if (added == out.end()) return;
+    // Sides that touch are no contact where the bodies overlap.
+    out.erase(std::remove_if(out.begin(), added, [](const PointPair& p) { return std::abs(p.gap_m) <= gaps::kFlush_m; }), added);
   }
 
   // Appends the contacts of the pairs that were found. overlap: the bodies may overlap.

@@ -59,7 +59,7 @@ TEST_CASE("Equal bodies that overlap are pushed straight apart, aligned or nearl
           INFO("normal " << normal.transpose() << " gap " << p.gap_m << " at " << (at.inverse() * p.on_a_m).transpose());
           CHECK((p.gap_m > 0 || normal.z() > 0.9999));
           if (p.gap_m > 0) continue;
-          CHECK(p.gap_m == Approx(-overlap_m).margin(4e-6));
+          CHECK(p.gap_m == Approx(-overlap_m).margin(1e-9));
           ++upwards;
         }
         CHECK(upwards >= 3);

@@ -90,13 +90,21 @@ int missing(const Kept& x, const Kept& y) {
   return count;
 }
 
+// Whether another place of a flat overlap with this depth and direction is kept: the exhaustive search finds more of them where
+// sides of the bodies are one plane.
+bool tells_overlap(const Kept& kept, const PointPair& p) {
+  return p.gap_m < 0 && std::any_of(kept.pairs.begin(), kept.pairs.end(), [&](const PointPair& q) {
+    return std::abs(q.gap_m - p.gap_m) < 2e-9 && (q.normal - p.normal).norm() < 1e-6;
+  });
+}
+
 // Number of pairs that every search must find, without an at least equally near one of the same place and direction.
 int uncovered(const std::vector<PointPair>& all, const Kept& kept, const ExpectedPairs& expected, const Isometry3d& at_a) {
   return static_cast<int>(std::count_if(all.begin(), all.end(), [&](const PointPair& p) {
     Kept nearer;
     for (const PointPair& q : kept.pairs)
       if (q.gap_m <= p.gap_m + 2e-9) nearer.pairs.push_back(q);
-    return !nearer.is_redundant(p) && expected.expected(p, at_a);
+    return !nearer.is_redundant(p) && !tells_overlap(nearer, p) && expected.expected(p, at_a);
   }));
 }
 
