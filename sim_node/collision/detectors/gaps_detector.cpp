@@ -18,6 +18,9 @@ namespace {
 
 using Eigen::Isometry3d;
 
+// A normal that leaves a surface by more than this is behind it. Cosine; half a degree.
+constexpr double kBehind = 0.01;
+
 bool has_triangles(ShapeKind k) { return k == ShapeKind::kMesh || k == ShapeKind::kHeightfield; }
 
 struct GapShape {
@@ -174,13 +177,25 @@ class GapsDetector : public Detector, public NearestFirstDetector {
     const Isometry3d at = box ? pose_a * a.offset : pose_a;
     contact_.query(*a.layers, at, *b.layers, pose_b, {reach_m, kEqualShare * reach_m}, found_);
     const bool pierced = found_.pierced, flush = any_flush(*a.layers, at, *b.layers, pose_b);
-    const bool told = std::any_of(found_.pairs.begin(), found_.pairs.end(), [](const PointPair& p) { return p.pierced; });
+    if (box && pierced && !flush) {
+      gaps::convex_mesh(a.convex, at, *b.tree, pose_b, reach_m, out);
+      if (!any_from_behind(*b.layers, pose_b, out)) return;
+      out.clear();
+    }
+    const bool crosses = std::any_of(found_.pairs.begin(), found_.pairs.end(), [](const PointPair& p) { return p.pierced; });
     add_found(a, at, b, pose_b, pierced || flush, out);
-    if (flush || (pierced && !told)) add_overlap_of_equals(a, at, b, pose_b, reach_m, out);
+    if (flush || (pierced && !crosses)) add_overlap_of_equals(a, at, b, pose_b, reach_m, out);
     const bool deep = std::any_of(out.begin(), out.end(), [](const PointPair& p) { return p.gap_m < -gaps::kMaxOriented_m; });
     if (!box || !deep) return;
     out.clear();
     gaps::convex_mesh(a.convex, at, *b.tree, pose_b, reach_m, out);
+  }
+
+  // Whether an overlap would push a surface of the mesh from inside: that of a side nearly in one plane with the box.
+  static bool any_from_behind(const ContactMesh& mesh, const Isometry3d& pose, const std::vector<PointPair>& pairs) {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const PointPair& p) {
+      return p.gap_m < 0 && p.normal.dot(pose.linear() * mesh.tree.triangles()[static_cast<std::size_t>(p.triangle_b)].normal) > kBehind;
+    });
   }
 
   // Bodies of equal size that overlap exactly on each other have no edge that passes inside a face. They have one when they
