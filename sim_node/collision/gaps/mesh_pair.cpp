@@ -18,8 +18,6 @@ namespace {
 // A point closer than this to a triangle lies on it. A point is nearer than another by more than this, m: a million
 // times the rounding of a metre.
 constexpr double kOn_m = 1e-9;
-// Surfaces closer than this touch, m: a tenth of the gap that contacts keep. Design.
-constexpr double kTouchingFaces_m = kFlush_m;
 // Faces within 0.8 degrees have the same normal. Cosine.
 constexpr double kSameNormal = 0.9999;
 // Depth up to which a vertex behind a face that faces it is an overlap: where an edge passes through a face, and where
@@ -134,7 +132,7 @@ bool orient(const Triangle& a, const Triangle& b, bool pierced, PointPair& p) {
     p.gap_m = -p.gap_m;
     return true;
   }
-  if (p.gap_m > kTouchingFaces_m) return true;
+  if (p.gap_m > kOn_m) return true;
   if (out_of_a < -kBeyond || into_b < -kBeyond) return false;
   const auto beyond = [&](const Triangle& t, const Vector3d& on, double side) {
     return std::any_of(std::begin(t.v), std::end(t.v), [&](const Vector3d& v) { return side * p.normal.dot(v - on) > kBeyond * (v - on).norm() + kOn_m; });
