@@ -97,9 +97,9 @@ def peak(lines):
                 blocks[-1] = [blocks[-1][0] + yes, blocks[-1][1] + total]
         return sum(y * math.log(y / n) + (n - y) * math.log(1 - y / n) for y, n in blocks if 0 < y < n)
 
-    # Of equal likelihoods, the one with the largest share in the middle.
+    # Of likelihoods that are equal but for rounding, the one with the largest share in the middle.
     share = [yes / total for _, yes, total in lines]
-    return max(range(len(lines)), key=lambda i: (likelihood(lines[:i + 1]) + likelihood(lines[:i:-1]), share[i], -abs(i - (len(lines) - 1) / 2)))
+    return max(range(len(lines)), key=lambda i: (round(likelihood(lines[:i + 1]) + likelihood(lines[:i:-1]), 9), share[i], -abs(i - (len(lines) - 1) / 2)))
 
 
 def table(columns, rows):
