@@ -1,5 +1,7 @@
 """Simulated players of games: their names, and the checks of the players of a population (scripts/simulated_player)."""
+import concurrent.futures
 import dataclasses
+import os
 import subprocess
 
 from tactus import tables
@@ -9,9 +11,10 @@ from tactus.refusal import Refusal
 NAMES = ("stage_model", "observer")  # the first is the default; also observer:NUMBER
 LARGEST_NUMBER = 2**32 - 1
 LARGEST_PRACTICE = 100_000  # as --practice of simulated_player
-MOST = 1024                 # players of one study; design: a population for sensitivity indices
+MOST = 2048                 # players of one study; design: a population of which an eighth passes the checks
 CHECKS = ("require", "leave_out", "count")
-CHECK_TIMEOUT_S = 600       # of one player; design: thirty times the 20 s that its checks take
+CHECK_TIMEOUT_S = 600       # of one player; design: sixty times the 10 s that its checks take
+NAMED = 20                  # players of one line, design
 PROGRAM = BIN / "observer_players"
 
 
@@ -87,9 +90,10 @@ def several(name, numbers, population, practice):
     return [Player(f"{name}:{n}", population, practice) for n in numbers_of(numbers)]
 
 
-def failing(player):
-    """Numbers of the checks that a player of a population fails, as a tuple. Raises Refusal when they cannot be run."""
-    words = [str(PROGRAM), "table", "--first", str(player.number), "--count", "1", "--seed", str(player.population)]
+def failing(player, first_only=False):
+    """Numbers of the checks that a player of a population fails, as a tuple; first_only: at most one, in a third of the time. Raises Refusal when they cannot be
+    run."""
+    words = [str(PROGRAM), "admit" if first_only else "table", "--first", str(player.number), "--count", "1", "--seed", str(player.population)]
     try:
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=CHECK_TIMEOUT_S, check=False)
     except OSError as error:
@@ -99,28 +103,43 @@ def failing(player):
     lines = [line.split(",") for line in done.stdout.splitlines()]
     if done.returncode != 0 or len(lines) < 2 or len(lines[1]) != len(lines[0]):
         raise Refusal(f"{PROGRAM}: does not check {player.words()}: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
+    if first_only:
+        return tuple(int(number) for number in lines[1][-1:] if number)
     return tuple(number for number, verdict in enumerate(lines[1][1:-1], start=1) if verdict == "FAIL")
 
 
-def checked(players, rule, report=lambda line: None):
+def checked(players, rule, report=lambda line: None, known=None):
     """The players with the numbers of the checks that they fail. rule: require: one that fails is a Refusal; leave_out: it does not play; count: it plays, and
-    its games name the checks. The typical person is not checked: its checks are tests of the library. Raises Refusal."""
+    its games name the checks. The typical person is not checked: its checks are tests of the library. known: {(population, number): failed checks} of players
+    that were checked before. Raises Refusal."""
+    known = known or {}
+    asked = [player for player in players if player.number is not None and (player.population, player.number) not in known]
+    first_only = rule != "count"
+    if asked:
+        report(f"checks {described(asked)}; up to 10 s of a processor for each")
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        failed = dict(zip(asked, pool.map(lambda player: failing(player, first_only), asked)))
     found, left_out = [], []
     for player in players:
         if player.number is not None:
-            report(f"checks {player.words()}")
-            player = dataclasses.replace(player, failed=failing(player))
-            if player.failed and rule == "count":
+            failures = failed[player] if player in failed else known[player.population, player.number]
+            player = dataclasses.replace(player, failed=failures)
+            if failures and rule == "count":
                 report(f"{player.words()} fails the checks {player.verdict()}; its results are not those of a player that is like people")
-            if player.failed and rule == "require":
-                raise Refusal(f"{player.words()} fails the checks {' '.join(map(str, player.failed))} and is not asked; choose another number "
+            if failures and rule == "require":
+                raise Refusal(f"{player.words()} fails check {player.verdict()} and is not asked; choose another number "
                               "(bin/observer_players table), or write leave_out or count as the rule for failed checks")
         (left_out if player.failed and rule == "leave_out" else found).append(player)
     if left_out:
-        report(f"{len(left_out)} of {len(players)} players fail a check and are not asked: " + "; ".join(f"{p.name}: {p.verdict()}" for p in left_out))
+        report(f"{len(left_out)} of {len(players)} players fail a check and are not asked: " + named(left_out))
     if not found:
         raise Refusal("no player passes the checks, so no player is left; choose other numbers, or write count as the rule for failed checks")
     return found
+
+
+def named(players):
+    """The first players with their failed checks."""
+    return "; ".join(f"{p.name}: {p.verdict()}" for p in players[:NAMED]) + (f"; and {len(players) - NAMED} more" if len(players) > NAMED else "")
 
 
 def described(players):

@@ -3,7 +3,6 @@
 // steps are computed again: the result equals that of a filter which received all measurements in time. Pure.
 #pragma once
 
-#include <deque>
 #include <vector>
 
 #include "scripts/simulated_player/observer/matrices.h"
@@ -54,15 +53,29 @@ class DelayedKalman {
     double input_sd = 0;
     std::vector<Measurement> measurements;
   };
+  // An element of A that is not zero.
+  struct Element {
+    int row, column;
+    double value;
+  };
   void apply(Step& step) const;
   void advance(const Step& from, Step& to) const;
+  template <int N>
+  void advance_covariance(const Matrix& from, double input, Matrix& to) const;
   void refresh();
   std::size_t index_of(double age_s) const;
+  // Step 0 is the oldest.
+  Step& at(std::size_t index) {
+    const std::size_t i = oldest_ + index;
+    return ring_[i < ring_.size() ? i : i - ring_.size()];
+  }
 
   HandModel model_;
-  std::size_t steps_;
-  std::deque<Step> history_;  // newest last
-  std::size_t dirty_;         // first step to compute again
+  std::vector<Element> elements_;
+  std::vector<Step> ring_;  // as many steps as the memory holds
+  Step next_;
+  std::size_t oldest_ = 0, size_ = 1;
+  std::size_t dirty_ = 0;  // first step to compute again
   long too_old_ = 0;
 };
 

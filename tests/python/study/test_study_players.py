@@ -14,7 +14,7 @@ from tactus.analysis import trials
 from tactus.refusal import Refusal
 from tactus.study import games, study_file, trial_table
 from tactus.sweep import main as sweep_main
-from tactus.sweep import virtual_games
+from tactus.sweep import verdicts, virtual_games
 from tactus.sweep.sweep_folder import SweepFolder
 
 STUDY = f"""<?xml version="1.0" encoding="UTF-8"?>
@@ -64,8 +64,8 @@ class Players(unittest.TestCase):
         self.assertEqual(row["player"], "observer:0 of population 5, 20 actions of practice")
         self.assertIsNone(trial_table.wrong(row))
 
-    def test_seeds_do_not_depend_on_the_player_and_with_common_starts_not_on_the_condition(self):
-        for starts, seeds in (("own", 3), ("common", 1)):
+    def test_players_of_a_population_start_differently_and_with_common_starts_alike_in_all_conditions(self):
+        for starts, seeds in (("own", 12), ("common", 4)):
             study = self.study('<player name="observer" numbers="0-3"/>', limit=('limit="30s"', f'limit="30s" starts="{starts}"'))
             found = {g.seed(study) for chunk in virtual_games.games_of(study, 1, study.players) for g in chunk}
             self.assertEqual(len(found), seeds)
@@ -92,19 +92,27 @@ class Players(unittest.TestCase):
         self.assertTrue(players.is_player("observer:4294967295"))
 
     def checked(self, rule, failing):
-        with mock.patch.object(players, "failing", side_effect=lambda player: failing.get(player.number, ())):
+        with mock.patch.object(players, "failing", side_effect=lambda player, first_only=False: failing.get(player.number, ())[:1 if first_only else None]):
             return players.checked(players.several("observer", "0-3", 1, 0), rule, self.said.append)
 
     def test_a_player_that_fails_a_check_is_refused_left_out_or_counted_and_named(self):
         self.said = []
-        with self.assertRaisesRegex(Refusal, "observer:2 of population 1 fails the checks 2 3 and is not asked"):
+        with self.assertRaisesRegex(Refusal, "observer:2 of population 1 fails check 2 and is not asked"):
             self.checked("require", {2: (2, 3)})
         self.assertEqual([p.number for p in self.checked("leave_out", {2: (2, 3)})], [0, 1, 3])
-        self.assertIn("1 of 4 players fail a check and are not asked: observer:2: 2 3", self.said)
+        self.assertIn("1 of 4 players fail a check and are not asked: observer:2: 2", self.said)
         counted = self.checked("count", {2: (2, 3)})
         self.assertEqual([p.verdict() for p in counted], ["none", "none", "2 3", "none"])
         with self.assertRaisesRegex(Refusal, "no player is left"):
             self.checked("leave_out", dict.fromkeys(range(4), (1,)))
+        self.assertEqual(players.named([players.Player(f"observer:{n}", failed=(3,)) for n in range(22)]).count("observer"), 20)
+        self.assertTrue(players.named([players.Player(f"observer:{n}", failed=(3,)) for n in range(22)]).endswith("observer:19: 3; and 2 more"))
+
+    def test_known_verdicts_are_not_asked_again(self):
+        with mock.patch.object(players, "failing", return_value=()) as failing:
+            found = players.checked(players.several("observer", "0-3", 1, 0), "leave_out", known={(1, 0): (), (1, 2): (3,), (2, 3): (3,)})
+        self.assertEqual([p.number for p in found], [0, 1, 3])
+        self.assertEqual(sorted(call.args[0].number for call in failing.call_args_list), [1, 3])
 
     def test_the_typical_person_and_the_player_of_fixed_rules_have_no_checks_to_run(self):
         with mock.patch.object(players, "failing", side_effect=AssertionError):
@@ -173,7 +181,7 @@ class Players(unittest.TestCase):
         self.assertEqual([(f.name, f.text, f.decided_by) for f in study.falsifiers], [("sound", "A delay of sound must do nothing.", "tactus study information")])
         shipped = study_file.read("percept_limits")
         self.assertEqual(len(shipped.falsifiers), 4)
-        self.assertEqual((len(shipped.players), shipped.checks, shipped.stimulus.common_starts), (128, "leave_out", True))
+        self.assertEqual((len(shipped.players), shipped.checks, shipped.stimulus.common_starts), (1280, "leave_out", True))
         self.assertTrue({"", "percept", "force", "action"} <= {f.stage for c in shipped.conditions for f in c.factors})
 
     def test_a_live_session_has_one_player_of_the_first_population(self):
@@ -189,9 +197,31 @@ class Players(unittest.TestCase):
         program.chmod(0o755)
         with mock.patch.object(players, "PROGRAM", program):
             self.assertEqual(players.failing(players.Player("observer:3")), (2, 3))
+        for last, found in (("yes,", ()), ("no,11", (11,))):
+            program.write_text(f"#!/bin/sh\n[ $1 = admit ] || exit 1\necho '{verdicts.HEADER}'\necho $7,$3,{last}\n", encoding="utf-8")
+            with mock.patch.object(players, "PROGRAM", program):
+                self.assertEqual(players.failing(players.Player("observer:3"), True), found)
         program.write_text("#!/bin/sh\necho no >&2\nexit 1\n", encoding="utf-8")
         with mock.patch.object(players, "PROGRAM", program), self.assertRaisesRegex(Refusal, "does not check observer:3"):
             players.failing(players.Player("observer:3"))
+
+    def test_a_table_of_verdicts_is_read_verified_or_refused_with_its_line(self):
+        table = self.folder / "players.csv"
+        table.write_text(f"{verdicts.HEADER}\n1,0,yes,\n1,1,no,2\n", encoding="utf-8")
+        self.assertEqual(verdicts.read(table), {(1, 0): (), (1, 1): (2,)})
+        of = players.several("observer", "0-3", 1, 0)
+        with mock.patch.object(players, "failing", side_effect=lambda player, first_only: (2,) if player.number else ()):
+            self.assertEqual(verdicts.verified(table, of), {(1, 0): (), (1, 1): (2,)})
+        with mock.patch.object(players, "failing", return_value=()), self.assertRaisesRegex(Refusal, "verdict of observer:1 of population 1 is another one"):
+            verdicts.verified(table, of)
+        for line in ("1,0,yes,", "1,2,yes,3", "1,2,no,", "1,2,no,13", "1,2,no,x", "1,2,maybe,", "1,-2,yes,", "1,2", "", "1,4294967296,yes,"):
+            table.write_text(f"{verdicts.HEADER}\n1,0,yes,\n{line}\n", encoding="utf-8")
+            with self.assertRaisesRegex(Refusal, "players.csv:3: is no verdict"):
+                verdicts.read(table)
+        for content in (b"", b"player\n", b"\xff"):
+            table.write_bytes(content)
+            with self.assertRaisesRegex(Refusal, "observer_players admit"):
+                verdicts.read(table)
 
 
 if __name__ == "__main__":

@@ -41,8 +41,8 @@ def plain_bytes(path, largest_bytes):
 
 
 def adopt(folder, table):
-    """Copies the rows of the table that belong to this sweep into its chunks; returns their number. Replays the first game of each condition and player; its result must
-    be identical, since another build may give other games. Raises Refusal, OSError."""
+    """Copies the rows of the table that belong to this sweep into its chunks; returns their number. Replays the first game of each condition and of each player; its
+    result must be identical, since another build may give other games. Raises Refusal, OSError."""
     known, seen, count = read(table), set(), 0
     with Player(folder.study.scene) as player:
         for number, chunk in enumerate(folder.chunks):
@@ -52,8 +52,8 @@ def adopt(folder, table):
                 if row is None or row["missed"]:
                     continue
                 row = {**row, "trial": game.number, "player": game.player.words(), "failed_checks": game.player.verdict()}
-                if (game.player, game.condition.id) not in seen:
-                    seen.add((game.player, game.condition.id))
+                if not {game.player, game.condition.id} <= seen:
+                    seen |= {game.player, game.condition.id}
                     again = virtual_games.row(folder.study, game, player.play(virtual_games.request(folder.study, game)))
                     if [row[k] for k in ("profile_sha256", *SAME)] != [again.get(k) for k in ("profile_sha256", *SAME)]:
                         raise Refusal(f"{table}: its game {row['condition']}, seed {row['seed']}, has another result with this build; remove --from")

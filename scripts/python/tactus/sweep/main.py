@@ -9,7 +9,7 @@ from tactus import players, signals, terminal
 from tactus.paths import remedy
 from tactus.refusal import Refusal, sentence_of
 from tactus.study import study_file
-from tactus.sweep import adopted, player, progress, virtual_games
+from tactus.sweep import adopted, player, progress, verdicts, virtual_games
 from tactus.sweep.runners import Parallel, Slurm
 from tactus.sweep.sweep_folder import SweepFolder
 
@@ -43,6 +43,7 @@ def parsed(words):
     p.add_argument("--players", type=int, metavar="K", help="only the first K players")
     p.add_argument("--checks", choices=players.CHECKS, help="for a player of a population that fails one of the twelve checks. require: the sweep is refused; leave_out: "
                    "it does not play; count: it plays, and the table names the checks. Default: that of the study, or require")
+    p.add_argument("--verdicts", metavar="TABLE", help="verdicts of the checks from `observer_players admit`, so that they do not run again; two are verified")
     p.add_argument("--resume", action="store_true", help="continues the sweep in DIR")
     p.add_argument("--from", dest="table", metavar="TABLE", help="games.csv, or .csv.xz, of an earlier sweep, whose matching games are reused")
     p.add_argument("--jobs", type=int, metavar="J", help="parallel jobs on this machine, each on one processor; default: one for each processor")
@@ -50,7 +51,7 @@ def parsed(words):
     p.add_argument("--partition", help="partition of Slurm; default: that of the cluster")
     p.add_argument("--array-size", type=int, default=64, metavar="K", help="tasks of the array job; default: 64")
     a = p.parse_args(words)
-    if a.resume and (a.study or a.games or a.player or a.players or a.checks):
+    if a.resume and (a.study or a.games or a.player or a.players or a.checks or a.verdicts):
         raise Refusal("--resume takes the study, the players and the number of games from DIR; remove them")
     if not a.resume and not (a.study and a.games):
         raise Refusal("the study or --games is missing; give both, or --resume")
@@ -81,7 +82,11 @@ def players_of(a, study):
         except ValueError as error:
             raise Refusal(f"--player {a.player}: {error}") from None
     virtual_games.require_few(study, a.games, len(found[:a.players]))  # before the checks, which take time
-    return players.checked(found[:a.players], a.checks or study.checks, lambda line: say(f"sweep: {line}"))
+    rule = a.checks or study.checks
+    if a.verdicts and rule == "count":
+        raise Refusal("--verdicts holds only the first failing check of a player, and --checks count names all; remove one of them")
+    known = verdicts.verified(a.verdicts, found[:a.players]) if a.verdicts else {}
+    return players.checked(found[:a.players], rule, lambda line: say(f"sweep: {line}"), known)
 
 
 def new(a):

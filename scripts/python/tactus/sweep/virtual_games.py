@@ -18,9 +18,11 @@ class Game:
     player: players.Player = players.Player()
 
     def seed(self, study):
-        """Seed of all random draws of the game; it depends on study seed, condition and repetition only, with common starts not on the condition. 53 bits:
-        exact in JSON."""
+        """Seed of all random draws of the game. It depends on the seed of the study, the condition, the repetition, and the number of a player of a population;
+        with common starts not on the condition. 53 bits: exact in JSON."""
         text = f"{study.seed}|{'' if study.stimulus.common_starts else self.condition.id}|{self.repetition}"
+        if self.player.number is not None:  # players start differently: what they have in common is not the start
+            text += f"|{self.player.number}"
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") >> 11
 
 
@@ -33,18 +35,16 @@ def require_few(study, repetitions, number_of_players):
 
 
 def games_of(study, repetitions, all_players=(players.Player(),)):
-    """[[Game]]: chunks of games, each of one condition and player. The first chunks of all conditions come before the second ones."""
-    chunks = []
-    for first in range(1, repetitions + 1, CHUNK):
-        for player in all_players:
-            for condition in study.conditions:
-                chunks.append([(condition, n, player) for n in range(first, min(first + CHUNK, repetitions + 1))])
+    """[[Game]]: chunks of games, each of one condition. The first chunks of all conditions come before the second ones, and the first game of all players
+    before the second ones."""
+    of_a_condition = [(n, player) for n in range(1, repetitions + 1) for player in all_players]
     games, number = [], 0
-    for chunk in chunks:
-        games.append([])
-        for of_game in chunk:
-            number += 1
-            games[-1].append(Game(number, *of_game))
+    for first in range(0, len(of_a_condition), CHUNK):
+        for condition in study.conditions:
+            games.append([])
+            for repetition, player in of_a_condition[first:first + CHUNK]:
+                number += 1
+                games[-1].append(Game(number, condition, repetition, player))
     return games
 
 

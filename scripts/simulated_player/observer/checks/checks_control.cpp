@@ -88,7 +88,7 @@ std::vector<CheckResult> check_pointing(const PlayerParameters& player, std::uin
           {1, "R^2 of time against difficulty", "1", undelayed.r2, 0.9, 1, "above 0.9",
            "Fitts 1954; ISO 9241-9 studies", kSecondHand},
           {2, "growth of the slope with delay", "ms/(ms bit)", fit_line(kPointingDelays_s, slopes).slope,
-           0.6 * growth, 1.4 * growth, "1.03 (unverified)", kMackenzie, kUnverified},
+           std::min(0.6 * growth, 1.4 * growth), std::max(0.6 * growth, 1.4 * growth), "1.03 (unverified)", kMackenzie, kUnverified},
           {3, "added time at 225 ms", "%", 100 * (means.back() / means.front() - 1), 40 * longer, 90 * longer, "64",
            kMackenzie, kVerified},
           {3, "added errors at 225 ms", "%", 100 * (errors.back() / errors.front() - 1),
