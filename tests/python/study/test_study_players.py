@@ -181,7 +181,7 @@ class Players(unittest.TestCase):
         self.assertEqual([(f.name, f.text, f.decided_by) for f in study.falsifiers], [("sound", "A delay of sound must do nothing.", "tactus study information")])
         shipped = study_file.read("percept_limits")
         self.assertEqual(len(shipped.falsifiers), 4)
-        self.assertEqual((len(shipped.players), shipped.checks, shipped.stimulus.common_starts), (1280, "leave_out", True))
+        self.assertEqual((len(shipped.players), shipped.checks, shipped.stimulus.common_starts), (893, "leave_out", True))
         self.assertTrue({"", "percept", "force", "action"} <= {f.stage for c in shipped.conditions for f in c.factors})
 
     def test_a_live_session_has_one_player_of_the_first_population(self):

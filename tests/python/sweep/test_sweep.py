@@ -64,7 +64,7 @@ class Sweep(unittest.TestCase):
     def test_a_folder_of_a_stranger_is_no_sweep_and_is_said_so_at_once(self):
         for kind, text in (("deep", "[" * 100_000), ("number", '{"games": 1e999, "study": "s"}'), ("list", "[]"), ("long", " " * 200_000 + "{}"), ("pipe", None),
                            ("no games", json.dumps({"games": 0, "study": str(self.study)})), ("no players", json.dumps({"games": 1, "study": str(self.study), "players": []})),
-                           ("players", json.dumps({"games": 1, "study": str(self.study), "players": [{}] * 1025}))):
+                           ("players", json.dumps({"games": 1, "study": str(self.study), "players": [{}] * 2049}))):
             folder = self.folder / kind
             folder.mkdir()
             if text is None:

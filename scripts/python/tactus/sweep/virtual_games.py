@@ -21,7 +21,7 @@ class Game:
         """Seed of all random draws of the game. It depends on the seed of the study, the condition, the repetition, and the number of a player of a population;
         with common starts not on the condition. 53 bits: exact in JSON."""
         text = f"{study.seed}|{'' if study.stimulus.common_starts else self.condition.id}|{self.repetition}"
-        if self.player.number is not None:  # players start differently: what they have in common is not the start
+        if self.player.number is not None:  # players start differently, so that a common start is no common cause
             text += f"|{self.player.number}"
         return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") >> 11
 
