@@ -5,6 +5,7 @@
 
 #include "scripts/simulated_player/observer/hand.h"
 #include "scripts/simulated_player/observer/lqg.h"
+#include "scripts/simulated_player/observer/noise_stream.h"
 #include "scripts/simulated_player/observer/reach.h"
 #include "scripts/simulated_player/observer/responses.h"
 
@@ -45,6 +46,27 @@ TEST_CASE("Without noise in the command the feedback is that of the linear-quadr
   p.control_share = 0.5;
   CHECK(solve_lqg(p, Vector::Ones(1), Matrix::Zero(1, 1)).feedback[0][0] ==
         Approx(2 * 0.9 * 3 / (0.5 + 1.25 * 4 * 3)));
+}
+
+TEST_CASE("The feedback of an endless movement is the fixed point of its equation, for every number of states") {
+  NoiseStream noise(3, 1);
+  for (int n = 1; n <= kMaxStates; ++n) {
+    LqgProblem p;
+    p.a = Matrix::NullaryExpr(n, n, [&] { return noise.normal(0.3 / std::sqrt(n)); });
+    p.b = Vector::NullaryExpr(n, [&] { return noise.normal(); });
+    p.running_cost = p.final_cost = Matrix::Identity(n, n);
+    p.control_share = 0.4;
+    p.effort = 0.7;
+    const Vector feedback = steady_feedback(p);
+    Matrix cost = p.running_cost;  // of the closed loop: S = Q + A' S (A - B L)
+    for (int i = 0; i < 2000; ++i) {
+      const Matrix next = p.running_cost + p.a.transpose() * cost * (p.a - p.b * feedback.transpose());
+      cost = 0.5 * (next + next.transpose());
+    }
+    const Vector again = p.a.transpose() * cost * p.b / (p.effort + 1.16 * p.b.dot(cost * p.b));  // 1 + 0.4^2
+    INFO(n << " states");
+    CHECK((feedback - again).norm() <= 1e-7 * feedback.norm());
+  }
 }
 
 TEST_CASE("The decay rate of a known system is found") {

@@ -1,6 +1,7 @@
 #include "scripts/simulated_player/observer/delayed_kalman.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -97,6 +98,46 @@ TEST_CASE("A fast movement is less certain than a slow one") {
   DelayedKalman moves(model, fast, Matrix::Zero(2, 2)), rests(model, Vector::Zero(2), Matrix::Zero(2, 2));
   moves.predict(0), rests.predict(0);
   CHECK(moves.covariance()(0, 0) - rests.covariance()(0, 0) == Approx(1e-3 * 0.01));
+}
+
+TEST_CASE("A filter of any size equals the textbook equations of a dense model") {
+  NoiseStream noise(2, 1);
+  for (int n = 2; n <= kMaxStates; ++n) {
+    HandModel model;
+    const auto random = [&] { return noise.uniform() < 0.4 ? 0.0 : noise.normal(0.5); };
+    model.a = Matrix::NullaryExpr(n, n, random);
+    model.b = Vector::NullaryExpr(n, random);
+    model.noise = Matrix::Identity(n, n) * 0.1;
+    model.control_share = 0.3, model.control_sd = 0.2, model.speed_noise_m2_s = 0.5;
+    Vector mean = Vector::NullaryExpr(n, random);
+    Matrix covariance = Matrix::Identity(n, n);
+    DelayedKalman filter(model, mean, covariance);
+    for (int step = 0; step < 20; ++step) {
+      const Vector h = Vector::NullaryExpr(n, random);
+      const double y = noise.normal(), u = noise.normal(), sd = noise.uniform();
+      filter.measure(0, h, y, 0.5);
+      filter.predict(u, sd);
+      const Vector gain = covariance * h / (h.dot(covariance * h) + 0.5);
+      mean += gain * (y - h.dot(mean));
+      covariance = ((Matrix::Identity(n, n) - gain * h.transpose()) * covariance).eval();
+      const double input = 0.3 * 0.3 * u * u + 0.2 * 0.2 + sd * sd, diffusion = 0.5 * std::abs(mean[1]) * model.dt_s;
+      mean = (model.a * mean + model.b * u).eval();
+      covariance = (model.a * covariance * model.a.transpose() + model.noise + input * model.b * model.b.transpose()).eval();
+      covariance(0, 0) += diffusion;
+      INFO(n << " states, step " << step);
+      REQUIRE((filter.mean() - mean).norm() <= 1e-9 * (1 + mean.norm()));
+      REQUIRE((filter.covariance() - covariance).norm() <= 1e-9 * covariance.norm());
+    }
+  }
+}
+
+TEST_CASE("A filter without memory applies a late measurement to its only step") {
+  DelayedKalman filter = test_filter(0);
+  for (int i = 0; i < 5; ++i) filter.predict(1);
+  const double before = filter.mean()[0];
+  filter.measure(0.3, place_row(), before + 1, 1e-6);
+  CHECK(filter.too_old() == 1);
+  CHECK(filter.mean()[0] == Approx(before + 1).margin(0.01));
 }
 
 TEST_CASE("A filter whose sizes differ is refused") {
