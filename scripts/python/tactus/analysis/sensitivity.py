@@ -33,7 +33,9 @@ def properties(population, numbers):
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=TIMEOUT_S, check=True)
     except (OSError, subprocess.SubprocessError):
         raise Refusal(f"{players.PROGRAM}: does not print the players; run scripts/build") from None
-    rows = list(csv.DictReader(done.stdout.splitlines()))
+    rows = list(csv.DictReader(done.stdout.splitlines(), strict=True))
+    if any(None in row or None in row.values() for row in rows):
+        raise Refusal(f"{players.PROGRAM}: prints no table of players; run scripts/build")
     return {name: np.array([float(rows[number][name]) for number in numbers]) for name in rows[0] if name != "player"}
 
 

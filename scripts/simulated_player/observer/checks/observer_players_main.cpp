@@ -3,26 +3,30 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scripts/simulated_player/observer/checks/checks.h"
 #include "scripts/simulated_player/observer/population.h"
 #include "sync/text/arguments.h"
+#include "sync/text/csv.h"
 
 namespace observer = tactus::observer;
 
 namespace {
 
+std::string cell(std::string_view text) { return tactus::sync::csv_cell(text); }
+
 void print_properties() {
   std::printf("row,property,unit,low_5,median,high_95,evidence,source\n");
   for (const auto& r : observer::parameter_ranges())
-    std::printf("%d,%s,%s,%g,%g,%g,%s,\"%s\"\n", r.row, r.name, r.unit, r.low, r.centre, r.high,
-                observer::evidence_name(r.evidence), r.source);
+    std::printf("%d,%s,%s,%g,%g,%g,%s,%s\n", r.row, cell(r.name).c_str(), cell(r.unit).c_str(), r.low, r.centre, r.high,
+                cell(observer::evidence_name(r.evidence)).c_str(), cell(r.source).c_str());
 }
 
 void print_players(int count, std::uint64_t seed) {
   std::printf("player");
-  for (const auto& r : observer::parameter_ranges()) std::printf(",%s [%s]", r.name, r.unit);
+  for (const auto& r : observer::parameter_ranges()) std::printf(",%s", cell(std::string(r.name) + " [" + r.unit + "]").c_str());
   std::printf("\n");
   for (int i = 0; i < count; ++i) {
     const observer::PlayerParameters player = observer::player_of(static_cast<std::uint32_t>(i), seed);
@@ -38,9 +42,9 @@ int print_checks(const observer::PlayerParameters& player, std::uint64_t seed) {
   std::printf("check,quantity,unit,value,low,high,verdict,published,evidence,source\n");
   for (const auto& r : observer::run_checks(player, seed)) {
     passed = passed && r.passed();
-    std::printf("%d,\"%s\",%s,%.5g,%.5g,%.5g,%s,\"%s\",%s,\"%s\"\n", r.check, r.quantity.c_str(), r.unit.c_str(),
-                r.value, r.low, r.high, r.passed() ? "pass" : "FAIL", r.published.c_str(),
-                observer::evidence_name(r.evidence), r.source.c_str());
+    std::printf("%d,%s,%s,%.5g,%.5g,%.5g,%s,%s,%s,%s\n", r.check, cell(r.quantity).c_str(), cell(r.unit).c_str(), r.value,
+                r.low, r.high, r.passed() ? "pass" : "FAIL", cell(r.published).c_str(),
+                cell(observer::evidence_name(r.evidence)).c_str(), cell(r.source).c_str());
   }
   return passed ? 0 : 1;
 }
