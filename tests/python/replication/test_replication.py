@@ -216,6 +216,12 @@ class Measures(unittest.TestCase):
         table = dice.normal(0, 1, (12, 1)) + np.array([0.0, 0.0, 2.0, 4.0]) + dice.normal(0, 0.2, (12, 4))
         self.assertEqual(2, measures.first_worse(table))
         self.assertIsNone(measures.first_worse(np.zeros((5, 3))))
+        self.assertEqual(1, measures.first_worse(np.array([[0.0, 1.0, 0.0]] * 5)))
+
+    def test_a_level_that_harms_nothing_is_named_in_five_of_a_hundred_experiments(self):
+        dice = np.random.default_rng(6)
+        named = sum(measures.first_worse(dice.normal(0, 1, (12, 7))) is not None for _ in range(2000))
+        self.assertLessEqual(named, 100 + 3 * 10)  # 5 % and three standard errors; without the correction about 340
 
     def test_a_threshold_that_the_levels_do_not_reach_has_no_value(self):
         never = [(x, {"right": i % 2}) for x in (1.0, 2.0, 4.0) for i in range(40)]
