@@ -52,11 +52,25 @@ class Sensitivity(unittest.TestCase):
 
     def test_shares_are_of_each_degraded_sense_and_of_players_that_played_all(self):
         rows = [game(n, m, success) for n in range(25) for m in ("visual", "haptic:percept") for success in (0, n % 2)]
-        rows += [game(99, "visual", 1), game(0, "visual", 1, "off"), game(0, "", 1, ""), game(0, "visual", 1, second="audio"), game(0, "visual", 1, missed=1)]
+        rows += [game(99, "visual", 1), game(0, "visual", 1, "off"), game(0, "visual", 1, second="haptic"), game(0, "visual", 1, second="audio"), game(0, "visual", 1, missed=1)]
         population, numbers, shares = sensitivity.shares(rows)
         self.assertEqual((population, numbers), (1, list(range(25))))
-        self.assertEqual(set(shares), {"visual", "haptic:percept", "all of these"})
+        self.assertEqual(set(shares), {"visual", "haptic:percept", "all degraded"})
         np.testing.assert_allclose(shares["visual"], [n % 2 / 2 for n in range(25)])
+        _, _, shares = sensitivity.shares(rows + [game(n, "", 1, "") for n in range(25)])
+        np.testing.assert_allclose(shares["undegraded"], np.ones(25))
+        np.testing.assert_allclose(shares["all degraded"], [n % 2 / 2 for n in range(25)])
+        missed = [row if i else {**row, "missed": 1} for i, row in enumerate(rows)]
+        self.assertEqual(sensitivity.shares(missed)[1], list(range(1, 25)))  # player 0 lacks a level
+
+    def test_outcomes_and_properties_that_hardly_vary_give_no_number_that_is_not_finite(self):
+        rng = np.random.default_rng(8)
+        outcome = np.zeros(60)
+        outcome[:3] = 1
+        values = {"same": np.ones(60), "first": np.arange(60.0), "chance": rng.normal(size=60)}
+        rows = sensitivity.table(values, {"rare": outcome, "never": np.zeros(60)})
+        self.assertTrue(all(np.isfinite(v) for row in rows for v in row.values() if not isinstance(v, str)), rows)
+        self.assertEqual(rows[0]["property"], "first")
 
     def test_games_without_enough_players_of_one_population_are_refused(self):
         for rows, reason in (([game(n, "visual", 1) for n in range(19)], "needs 20"),

@@ -37,6 +37,8 @@ class ThermalLag(unittest.TestCase):
 
     def test_a_touch_that_is_too_short_for_a_choice_does_not_count(self):
         self.assertEqual(thermal_lag.choices((TIME, PLAIN, TOUCHED), follows(9.0), 9.0), [])
+        rest = np.full(len(TIME), 33.0)
+        self.assertEqual(thermal_lag.choices((TIME, rest, TOUCHED), rest, 0.5), [])
 
     def test_touches_begin_and_end_with_the_contact(self):
         self.assertEqual([tuple(np.round(TIME[list(t)], 2)) for t in thermal_lag.touches(TOUCHED)], [(1.0, 2.48), (4.0, 5.48)])

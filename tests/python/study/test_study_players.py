@@ -108,6 +108,25 @@ class Players(unittest.TestCase):
         self.assertEqual(players.named([players.Player(f"observer:{n}", failed=(3,)) for n in range(22)]).count("observer"), 20)
         self.assertTrue(players.named([players.Player(f"observer:{n}", failed=(3,)) for n in range(22)]).endswith("observer:19: 3; and 2 more"))
 
+    def test_the_first_player_that_fails_ends_the_checks_of_the_others(self):
+        asked = []
+        def failing(player, first_only):
+            asked.append(player.number)
+            return (2,) if player.number == 3 else ()
+        pool = mock.MagicMock()
+        pool.return_value.__enter__.return_value.map = map  # in order and only as far as the results are taken
+        with mock.patch.object(players, "failing", side_effect=failing), mock.patch("concurrent.futures.ThreadPoolExecutor", pool):
+            with self.assertRaisesRegex(Refusal, "observer:3 "):
+                players.checked(players.several("observer", "0-999", 1, 0), "require")
+        self.assertEqual(asked, [0, 1, 2, 3])
+        self.assertTrue(pool.return_value.__enter__.return_value.shutdown.call_args.kwargs["cancel_futures"])
+
+    def test_progress_is_reported_after_each_twentieth_player(self):
+        said = []
+        with mock.patch.object(players, "failing", return_value=()):
+            players.checked(players.several("observer", "0-44", 1, 0), "leave_out", said.append)
+        self.assertEqual(said[1:], ["20 of 45 players are checked", "40 of 45 players are checked"])
+
     def test_known_verdicts_are_not_asked_again(self):
         with mock.patch.object(players, "failing", return_value=()) as failing:
             found = players.checked(players.several("observer", "0-3", 1, 0), "leave_out", known={(1, 0): (), (1, 2): (3,), (2, 3): (3,)})
@@ -214,11 +233,13 @@ class Players(unittest.TestCase):
             self.assertEqual(verdicts.verified(table, of), {(1, 0): (), (1, 1): (2,)})
         with mock.patch.object(players, "failing", return_value=()), self.assertRaisesRegex(Refusal, "verdict of observer:1 of population 1 is another one"):
             verdicts.verified(table, of)
+        with self.assertRaisesRegex(Refusal, "no verdict of these players"):
+            verdicts.verified(table, players.several("observer", "0-3", 2, 0))
         for line in ("1,0,yes,", "1,2,yes,3", "1,2,no,", "1,2,no,13", "1,2,no,x", "1,2,maybe,", "1,-2,yes,", "1,2", "", "1,4294967296,yes,"):
             table.write_text(f"{verdicts.HEADER}\n1,0,yes,\n{line}\n", encoding="utf-8")
             with self.assertRaisesRegex(Refusal, "players.csv:3: is no verdict"):
                 verdicts.read(table)
-        for content in (b"", b"player\n", b"\xff"):
+        for content in (b"", b"player\n", b"\xff", f"{verdicts.HEADER}\n".encode() + b"1,0,yes,\n" * 200_000):
             table.write_bytes(content)
             with self.assertRaisesRegex(Refusal, "observer_players admit"):
                 verdicts.read(table)

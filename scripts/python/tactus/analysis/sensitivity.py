@@ -1,9 +1,10 @@
-"""Which property of a simulated player decides how it plays under degradation: tactus --module tactus.analysis.sensitivity GAMES.csv
+"""Which property of a simulated player goes with its success under degradation: tactus --module tactus.analysis.sensitivity GAMES.csv
 
-For each degraded sense and stage of touch, the share of games that a player wins over all levels is compared with its properties (bin/observer_players players)
-by Spearman's rank correlation. Its square is the share of the variance between players that a monotone function of this property alone explains: the first-order
-index of Sobol for a model that is additive and monotone (Saltelli et al. 2008, Global Sensitivity Analysis, chapter 1). Properties that are correlated in the
-population share their variance. p values are those of all properties and groups together (Benjamini and Hochberg 1995). Intervals are of players drawn again.
+For each degraded sense and stage of touch, and for undegraded games, the share of games that a player wins over all levels is compared with its properties
+(bin/observer_players players) by Spearman's rank correlation. Its square is the share of the variance of ranks that the property explains. Few games of a player make
+both smaller, and correlated properties share them. A property that already decides undegraded games is one of skill. p values are those of all properties and
+groups together (Benjamini and Hochberg 1995); rows are shown for a small p only, so that their correlations are on average too large. Intervals are of players
+drawn again.
 """
 import argparse
 import csv
@@ -21,6 +22,8 @@ from tactus.refusal import Refusal
 from tactus.sweep import adopted
 
 RESAMPLES = 1999
+LARGEST_NUMBER = 1_000_000  # as --count of observer_players
+UNDEGRADED = "undegraded"
 FEWEST = 20    # players; design: below, a rank correlation of 0.44 is chance
 SHOWN_P = 0.05
 TIMEOUT_S = 60
@@ -28,24 +31,30 @@ TIMEOUT_S = 60
 
 def properties(population, numbers):
     """({name: (players,) values}) of these players of a population. Raises Refusal."""
+    if max(numbers) >= LARGEST_NUMBER:
+        raise Refusal(f"player {max(numbers)}: its properties cannot be printed; give games of players below {LARGEST_NUMBER}")
     words = [str(players.PROGRAM), "players", "--count", str(max(numbers) + 1), "--seed", str(population)]
     try:
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=TIMEOUT_S, check=True)
     except (OSError, subprocess.SubprocessError):
         raise Refusal(f"{players.PROGRAM}: does not print the players; run scripts/build") from None
-    rows = list(csv.DictReader(done.stdout.splitlines(), strict=True))
-    if any(None in row or None in row.values() for row in rows):
-        raise Refusal(f"{players.PROGRAM}: prints no table of players; run scripts/build")
-    return {name: np.array([float(rows[number][name]) for number in numbers]) for name in rows[0] if name != "player"}
+    try:
+        rows = list(csv.DictReader(done.stdout.splitlines(), strict=True))
+        return {name: np.array([float(rows[number][name]) for number in numbers]) for name in rows[0] if name != "player"}
+    except (csv.Error, IndexError, TypeError, ValueError):
+        raise Refusal(f"{players.PROGRAM}: prints no table of players; run scripts/build") from None
 
 
 def group_of(row):
-    """The name of the group of a condition: the degraded sense and stage; "" for an undegraded or removed sense, or two degraded senses."""
-    return "" if row["second_modality"] or not row["operator"] or operators.kind(row["operator"]) in operators.REMOVALS else row["modality_degraded"]
+    """The name of the group of a condition: the degraded sense and stage, or undegraded; "" for a removed sense, or two degraded senses."""
+    if not row["modality_degraded"]:
+        return UNDEGRADED
+    return "" if row["second_modality"] or operators.kind(row["operator"]) in operators.REMOVALS else row["modality_degraded"]
 
 
 def shares(rows):
-    """(population, [numbers], {group: (players,) shares of games that were won}) of the rows of games of one population. Raises Refusal."""
+    """(population, [numbers], {group: (players,) shares of games that were won}) of the rows of games of one population, of players that played all games.
+    Raises Refusal."""
     won = {}
     for row in rows:
         if row["missed"] or not (group := group_of(row)):
@@ -55,11 +64,14 @@ def shares(rows):
     if len({population for population, _ in won}) > 1:
         raise Refusal("the games are of players of several populations; give those of one")
     groups = sorted({group for of_player in won.values() for group in of_player})
-    complete = sorted(player for player, of_player in won.items() if len(of_player) == len(groups))
+    most = {group: max(len(of_player.get(group, [])) for of_player in won.values()) for group in groups}
+    complete = sorted(player for player, of_player in won.items() if all(len(of_player.get(group, [])) == most[group] for group in groups))
     if len(complete) < FEWEST:
-        raise Refusal(f"{len(complete)} players played every group of conditions, but a rank correlation needs {FEWEST}; play games of more players")
+        raise Refusal(f"{len(complete)} players played all games, but a rank correlation needs {FEWEST}; play games of more players")
     mean = {group: np.array([np.mean(won[player][group]) for player in complete]) for group in groups}
-    mean["all of these"] = np.mean([mean[group] for group in groups], axis=0)
+    degraded = [group for group in groups if group != UNDEGRADED]
+    if degraded:
+        mean["all degraded"] = np.mean([mean[group] for group in degraded], axis=0)
     return complete[0][0], [number for _, number in complete], mean
 
 
@@ -79,7 +91,7 @@ def table(values, outcomes, seed=1):
     for group, outcome in outcomes.items():
         mine = []
         for name, value in values.items():
-            rho, p = stats.spearmanr(value, outcome) if np.ptp(outcome) > 0 else (0.0, 1.0)
+            rho, p = stats.spearmanr(value, outcome) if np.ptp(outcome) > 0 and np.ptp(value) > 0 else (0.0, 1.0)
             mine.append({"group": group, "property": name, "correlation": float(rho), "share": float(rho**2), "p": float(p)})
         rows += sorted(mine, key=lambda row: -row["share"])
     for row, adjusted in zip(rows, multipletests([row["p"] for row in rows], method="fdr_bh")[1]):
@@ -87,7 +99,9 @@ def table(values, outcomes, seed=1):
         if adjusted < SHOWN_P:
             x, y = stats.rankdata(values[row["property"]])[draws], stats.rankdata(outcomes[row["group"]])[draws]
             x, y = x - x.mean(1, keepdims=True), y - y.mean(1, keepdims=True)
-            row["low"], row["high"] = map(float, np.quantile((x * y).sum(1) / np.sqrt((x**2).sum(1) * (y**2).sum(1)), [0.025, 0.975]))
+            size = np.sqrt((x**2).sum(1) * (y**2).sum(1))
+            drawn = (x * y).sum(1)[size > 0] / size[size > 0]  # players drawn again may all be alike
+            row["low"], row["high"] = map(float, np.quantile(drawn, [0.025, 0.975]))
     return rows
 
 

@@ -27,7 +27,7 @@ from tactus.rerender import render
 from tactus.study import quantities
 
 STORED = pathlib.Path(__file__).with_name("ranking_by_task.json")
-# Levels of each operator: ms, ms (standard deviation), %, Hz. Design: a mild and a strong one, between which players fail (docs/how_far.md).
+# Levels of each operator: ms, ms (standard deviation), %, Hz. Design: a mild and a strong one, between which players fail (docs/how_far/stage_model.md).
 LEVELS = {"delay": (100.0, 400.0), "jitter": (60.0,), "loss": (30.0, 70.0), "rate": (10.0, 2.0)}
 UNDEGRADED = ("", 0.0)
 CONDITIONS = [UNDEGRADED, *((operator, level) for operator, levels in LEVELS.items() for level in levels)]

@@ -3,7 +3,8 @@
 The task knob_by_warmth is simulated once, and its warmth is rendered again with time constants (operator response). A person can choose when the plate is half
 way from its rest to the temperature of the touched knob: the median of the undegraded plate in the second half of the touch. With a time constant T, a
 first-order system goes from T_begin to T_knob as T_knob + (T_begin - T_knob) exp(-t / T), so that it is half way at t = T ln((T_begin - T_knob) / (T_half - T_knob))
-after the contact. The falsifier holds when every measured time is within two ticks of the plate and a tenth of this time. Exit status: 0: it holds; 2: refuted.
+after the contact. The falsifier holds when every measured time is within two ticks of the plate and a tenth of this time. Exit status: 0: it holds; 2: refuted; 1: no touch allowed a choice,
+or an error.
 """
 import argparse
 import csv
@@ -65,6 +66,8 @@ def choices(undegraded, lagged, lag_s):
     for number, (first, last) in enumerate(touches(touched), start=1):
         knob, begin = float(np.median(plain[(first + last) // 2:last + 1])), max(first - 1, 0)  # the lag acts on the touch from its first tick
         half = (rest + knob) / 2
+        if half == knob:
+            continue  # the touch is too short for the plate to move
         expected = expected_s(float(lagged[begin]), knob, half, lag_s)
         if expected == 0 or expected > time[last] - time[begin]:
             continue
@@ -100,6 +103,8 @@ def run():
             folder = scratch / f"lag_{lag_ms}"
             folder.mkdir()
             of_lag[lag_ms] = rendered(scratch / "run" / "run.lcmlog", folder, lag_ms)
+    if any(not np.array_equal(of_lag[0][0], other[0]) for other in of_lag.values()):
+        raise Refusal("the renderings of one log have different times; run scripts/build")
     return [row for lag_ms in LAGS_MS for row in choices(of_lag[0], of_lag[lag_ms][1], lag_ms / 1000)]
 
 
@@ -112,6 +117,8 @@ def main(words):
     print(f"{'lag, s':>7} {'touch':>6} {'knob, degC':>11} {'expected, s':>12} {'measured, s':>12}  verdict")
     for row in rows:
         terminal.show(f"{row['lag_s']:7.1f} {row['touch']:6} {row['knob_degC']:11.2f} {row['expected_s']:12.3f} {row['measured_s']:12.3f}  {'holds' if row['holds'] else 'refuted'}")
-    holds = bool(rows) and all(row["holds"] for row in rows)
+    if not rows:
+        sys.exit("thermal_lag: no touch allowed a choice, so nothing was measured; change the task knob_by_warmth back")
+    holds = all(row["holds"] for row in rows)
     print("The falsifier thermal_lag " + ("holds." if holds else "is refuted."))
     return 0 if holds else REFUTED

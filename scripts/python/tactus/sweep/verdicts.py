@@ -5,7 +5,7 @@ from tactus import own_files, players, tables
 from tactus.refusal import Refusal, sentence_of
 
 HEADER = "population,player,admitted,first failing check"
-LARGEST_BYTES = 1_000_000  # design: ten times a table of players.MOST lines
+LARGEST_BYTES = 1_000_000  # design: twenty times a table of players.MOST lines
 CHECKS = 12
 
 
@@ -13,7 +13,10 @@ def read(path):
     """{(population, number): failed checks, at most the first} of a table. Raises Refusal with the line."""
     path = pathlib.Path(path)
     try:
-        lines = own_files.read_regular(path, LARGEST_BYTES).decode("utf-8").splitlines()
+        content = own_files.read_regular(path, LARGEST_BYTES)
+        if len(content) > LARGEST_BYTES:
+            raise Refusal(f"{path}: has more than {LARGEST_BYTES} bytes; give the output of observer_players admit")
+        lines = content.decode("utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise Refusal(f"{path}: cannot be read ({sentence_of(error) if isinstance(error, OSError) else 'it is no text in UTF-8'}); give the output of observer_players admit") from None
     if not lines or lines[0] != HEADER:
@@ -33,6 +36,8 @@ def verified(path, of):
     """read(path), for the players `of`. Checks the first player that passes and the first that fails again: another build may give other verdicts. Raises Refusal."""
     known = read(path)
     mine = [player for player in of if player.number is not None and (player.population, player.number) in known]
+    if not mine:
+        raise Refusal(f"{path}: has no verdict of these players; give a table of the same population, or remove --verdicts")
     for passes in (True, False):
         for player in [p for p in mine if (not known[p.population, p.number]) == passes][:1]:
             if players.failing(player, True) != known[player.population, player.number]:
