@@ -1,6 +1,7 @@
 #include "scripts/simulated_player/observer/delayed_kalman.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -110,6 +111,8 @@ std::size_t DelayedKalman::index_of(double age_s) const {
 }
 
 void DelayedKalman::measure(double age_s, const Vector& h, double y, double variance) {
+  if (h.size() != next_.mean.size())
+    throw std::invalid_argument("delayed_kalman: a measurement has another number of states than the model; give one row of it");
   if (!std::isfinite(y) || !std::isfinite(variance) || !std::isfinite(age_s) || variance <= 0) return;
   if (age_s > static_cast<double>(ring_.size() - 1) * model_.dt_s) ++too_old_;
   const std::size_t index = index_of(age_s);

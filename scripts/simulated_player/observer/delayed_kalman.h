@@ -30,7 +30,8 @@ class DelayedKalman {
   // One step with this input, and a standard deviation of the input in this step beside those of the model.
   void predict(double u, double input_sd = 0);
   // A scalar measurement y = h x + noise of this variance, which the player believes to be age_s old. Ignored when
-  // y or the variance is not finite. Negative ages count as 0.
+  // y or the variance is not finite. Negative ages count as 0. Throws std::invalid_argument when the size of h is not
+  // that of the state.
   void measure(double age_s, const Vector& h, double y, double variance);
   // The estimate at the newest step, or age_s before it.
   const Vector& mean();

@@ -74,7 +74,8 @@ std::vector<Matrix> forward(const LqgProblem& p, const std::vector<Vector>& feed
 
 void require_sizes(const LqgProblem& p) {
   const auto n = p.b.size();
-  if (p.a.rows() != n || p.a.cols() != n || p.running_cost.rows() != n || p.final_cost.rows() != n || p.steps < 1)
+  if (n < 1 || p.a.rows() != n || p.a.cols() != n || p.running_cost.rows() != n || p.running_cost.cols() != n ||
+      p.final_cost.rows() != n || p.final_cost.cols() != n || p.steps < 1)
     throw std::invalid_argument(
         "lqg: sizes of A, B and the costs differ, or there is no step; give matrices of one state");
 }

@@ -181,9 +181,19 @@ class Players(unittest.TestCase):
         text = (self.folder / "new" / "sweep.json").read_text(encoding="utf-8")
         (self.folder / "new" / "sweep.json").write_text(text[:text.index(',\n "players"')] + "\n}\n", encoding="utf-8")
         self.assertEqual(SweepFolder(self.folder / "new").players, [players.Player()])
+        (self.folder / "new" / "sweep.json").write_text(text.replace('"format": 2,', ""), encoding="utf-8")
+        with self.assertRaisesRegex(Refusal, "begun by another release"):
+            SweepFolder(self.folder / "new")
         (self.folder / "new" / "sweep.json").write_text(text.replace("observer:3", "robot"), encoding="utf-8")
         with self.assertRaisesRegex(Refusal, "holds no sweep"):
             SweepFolder(self.folder / "new")
+
+    def test_a_sweep_of_the_most_players_begins_and_resumes(self):
+        study = self.study("")
+        asked = [players.Player(f"observer:{players.LARGEST_NUMBER - i}", players.LARGEST_NUMBER, players.LARGEST_PRACTICE, tuple(range(1, 13))) for i in range(players.MOST)]
+        with mock.patch.object(SweepFolder, "unfinished"):
+            self.assertEqual(SweepFolder.begin(self.folder / "many", study, 1, asked).players, asked)
+        self.assertLess(2 * (self.folder / "many" / "sweep.json").stat().st_size, 2_000_000)
 
     def test_results_name_their_players_and_those_that_fail_a_check(self):
         study = self.study('<player name="observer" numbers="0-4"/>')

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "scripts/simulated_player/observer/hand.h"
 #include "scripts/simulated_player/observer/lqg.h"
@@ -67,6 +68,15 @@ TEST_CASE("The feedback of an endless movement is the fixed point of its equatio
     INFO(n << " states");
     CHECK((feedback - again).norm() <= 1e-7 * feedback.norm());
   }
+}
+
+TEST_CASE("A problem without states, or with costs of another size, is refused") {
+  CHECK_THROWS_AS(steady_feedback(LqgProblem{}), std::invalid_argument);
+  LqgProblem p;
+  p.a = Matrix::Identity(2, 2);
+  p.b = Vector::Ones(2);
+  p.running_cost = p.final_cost = Matrix::Zero(2, 3);
+  CHECK_THROWS_AS(steady_feedback(p), std::invalid_argument);
 }
 
 TEST_CASE("The decay rate of a known system is found") {

@@ -142,6 +142,8 @@ TEST_CASE("A filter without memory applies a late measurement to its only step")
 
 TEST_CASE("A filter whose sizes differ is refused") {
   CHECK_THROWS_AS(DelayedKalman(test_model(), Vector::Zero(3), Matrix::Identity(3, 3)), std::invalid_argument);
+  DelayedKalman filter = test_filter();
+  CHECK_THROWS_AS(filter.measure(0, Vector::Zero(3), 1, 1), std::invalid_argument);
 }
 
 }  // namespace tactus::observer

@@ -56,7 +56,7 @@ def adopt(folder, table):
                     seen |= {game.player, game.condition.id}
                     again = virtual_games.row(folder.study, game, player.play(virtual_games.request(folder.study, game)))
                     if [row[k] for k in ("profile_sha256", *SAME)] != [again.get(k) for k in ("profile_sha256", *SAME)]:
-                        raise Refusal(f"{table}: its game {row['condition']}, seed {row['seed']}, has another result with this build; remove --from")
+                        raise Refusal(f"{table}: its game {row['condition']}, seed {row['seed']}, has another result with this build, or was played with another practice; remove --from")
                 rows.append(row)
             if rows:
                 file = ChunkFile(folder.file(number))

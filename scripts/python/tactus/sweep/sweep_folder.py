@@ -12,7 +12,8 @@ from tactus.study import study_file, trial_table
 from tactus.sweep import chunk_file
 from tactus.sweep.virtual_games import games_of, require_few
 
-LARGEST_BYTES = 100_000  # of sweep.json: design, far above any
+LARGEST_BYTES = 1_000_000  # of sweep.json: design, twice players.MOST players that fail all checks
+FORMAT = 2  # the order of the games and the seeds of players of a population; 1, without the word: before 2026-11-28
 
 
 class SweepFolder:
@@ -26,8 +27,11 @@ class SweepFolder:
             self.players = [player_of(p) for p in self.asked.get("players", [{}])]
             if self.games_each < 1 or not 1 <= len(self.players) <= players.MOST:
                 raise ValueError
+            known = self.asked.get("format") == FORMAT
         except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise Refusal(f"{self.path}: holds no sweep to resume; remove --resume and give a new --out") from None
+        if not known and (len(self.players) > 1 or self.players[0].number is not None):
+            raise Refusal(f"{self.path}: was begun by another release, whose games of players of a population differ; start a new sweep with another --out")
         self.study = study_file.read(study)
         for file, sha256, name in ((self.study.path, self.study.sha256, "study_sha256"), (self.study.scene, scene_sha256(self.study), "scene_sha256")):
             if sha256 != self.asked.get(name):
@@ -51,7 +55,7 @@ class SweepFolder:
         path = SweepFolder.refuse_used(path)
         path.mkdir(parents=True, exist_ok=True)
         trial_table.replace(path / "sweep.json", json.dumps(
-            {"study": str(study.path.resolve()), "games": games, "study_sha256": study.sha256, "scene_sha256": scene_sha256(study), "players": [dataclasses.asdict(p) for p in all_players]}, indent=1) + "\n")
+            {"format": FORMAT, "study": str(study.path.resolve()), "games": games, "study_sha256": study.sha256, "scene_sha256": scene_sha256(study), "players": [dataclasses.asdict(p) for p in all_players]}, indent=1) + "\n")
         return SweepFolder(path)
 
     def hold(self):
