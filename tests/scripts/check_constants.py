@@ -41,6 +41,7 @@ TABLES = {
 OTHER = {
     "*/modality.csv": "limits of operators",
     "docs/constants.csv": "this register",
+    "docs/how_far/players.csv": "verdicts of simulated players",
     "examples/*/settings.csv": "settings of an example",
     "scripts/python/tactus/cluster/traffic.csv": "measured rates of messages",
     "visual_node/rooms/*.csv": "rooms",
