@@ -204,6 +204,8 @@ class Players(unittest.TestCase):
                          "simulated (observer:1 of population 1, observer:2 of population 1; 1 of them fail a check)")
         self.assertEqual(found(study.players).observer(), "simulated (5 players, observer:0 of population 1 to observer:4 of population 1)")
         self.assertEqual(len(found(study.players).participants()), 5)
+        many = self.study('<player name="observer" numbers="8-99 892"/>')
+        self.assertEqual(found(many.players).observer(), "simulated (93 players, observer:8 of population 1 to observer:892 of population 1)")
 
     def test_falsifiers_are_in_the_file_before_the_games(self):
         study = self.study('<player name="observer"/><falsifier name="sound" decided_by="tactus study information">A delay of sound must do nothing.</falsifier>')

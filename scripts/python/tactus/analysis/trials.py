@@ -4,6 +4,7 @@ An invalid row refuses the whole table, with file, line and reason, because an a
 """
 import math
 import pathlib
+import re
 
 import numpy as np
 
@@ -17,6 +18,11 @@ DEEPEST = 4  # design: OUT/study/participant/session/trials.csv
 TEXTS = {name for name, column in trial_table.COLUMNS.items() if column.kind == "text"} | {"seed"}  # a seed may need more than 53 bits
 # Columns that identify a row; a repeated row is refused.
 IDENTITY = ("study", "participant_id", "session", "condition", "block", "trial", "seed", "question")
+
+
+def by_number(text):
+    """Sorts names with numbers in them by their numbers: observer:9 before observer:10."""
+    return [(word.isdigit(), len(word) if word.isdigit() else 0, word) for word in re.split(r"(\d+)", text)]
 
 
 class Trials:
@@ -51,7 +57,7 @@ class Trials:
     def observer(self):
         """human, simulated, or both; the simulated players of games by name, and how many of them fail a check."""
         kinds = sorted(set(self["observer"]))
-        named = sorted(set(self["player"]) - {""})
+        named = sorted(set(self["player"]) - {""}, key=by_number)
         if "simulated" not in kinds or not named:
             return " and ".join(kinds)
         failed = len({player for player, checks in zip(self["player"], self["failed_checks"]) if checks not in ("", "none")})
