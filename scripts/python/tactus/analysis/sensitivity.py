@@ -106,8 +106,8 @@ def table(values, outcomes, seed=1):
 
 
 def show(rows, count):
-    print(f"{count} players; properties whose adjusted p is below {SHOWN_P:g}")
-    print(f"{'games under':24} {'property':36} {'correlation':>24} {'share':>6} {'p':>8}")
+    terminal.show(f"{count} players; properties whose adjusted p is below {SHOWN_P:g}")
+    terminal.show(f"{'games under':24} {'property':36} {'correlation':>24} {'share':>6} {'p':>8}")
     for group in dict.fromkeys(row["group"] for row in rows):
         mine = [row for row in rows if row["group"] == group and row["p"] < SHOWN_P]
         for row in mine:

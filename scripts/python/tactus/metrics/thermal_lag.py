@@ -114,11 +114,11 @@ def main(words):
         rows = run()
     except Refusal as refused:
         sys.exit(f"thermal_lag: {refused}")
-    print(f"{'lag, s':>7} {'touch':>6} {'knob, degC':>11} {'expected, s':>12} {'measured, s':>12}  verdict")
+    terminal.show(f"{'lag, s':>7} {'touch':>6} {'knob, degC':>11} {'expected, s':>12} {'measured, s':>12}  verdict")
     for row in rows:
         terminal.show(f"{row['lag_s']:7.1f} {row['touch']:6} {row['knob_degC']:11.2f} {row['expected_s']:12.3f} {row['measured_s']:12.3f}  {'holds' if row['holds'] else 'refuted'}")
     if not rows:
         sys.exit("thermal_lag: no touch allowed a choice, so nothing was measured; change the task knob_by_warmth back")
     holds = all(row["holds"] for row in rows)
-    print("The falsifier thermal_lag " + ("holds." if holds else "is refuted."))
+    terminal.show("The falsifier thermal_lag " + ("holds." if holds else "is refuted."))
     return 0 if holds else REFUTED
