@@ -11,7 +11,7 @@ from tactus.refusal import Refusal
 NAMES = ("stage_model", "observer")  # the first is the default; also observer:NUMBER
 LARGEST_NUMBER = 2**32 - 1
 LARGEST_PRACTICE = 100_000  # as --practice of simulated_player
-MOST = 2048                 # players of one study; design: a population of which an eighth passes the checks
+MOST = 2048                 # players of one study; design: a population of which a tenth passes the checks
 CHECKS = ("require", "leave_out", "count")
 CHECK_TIMEOUT_S = 600       # of one player; design: sixty times the 10 s that its checks take
 NAMED = 20                  # players of one line, design
@@ -120,22 +120,25 @@ def checked(players, rule, report=lambda line: None, known=None):
         report(f"checks {described(asked)}; up to 10 s of a processor for each")
     found, left_out, done = [], [], 0
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        failures = pool.map(lambda player: failing(player, first_only), asked)  # in order; a refusal cancels those that have not begun
-        for player in players:
-            if player.number is not None:
-                failed = known.get((player.population, player.number))
-                if failed is None:
-                    failed, done = next(failures), done + 1
-                    if done % REPORTED == 0:
-                        report(f"{done} of {len(asked)} players are checked")
-                player = dataclasses.replace(player, failed=failed)
-                if failed and rule == "count":
-                    report(f"{player.words()} fails the checks {player.verdict()}; its results are not those of a player that is like people")
-                if failed and rule == "require":
-                    pool.shutdown(wait=False, cancel_futures=True)
-                    raise Refusal(f"{player.words()} fails check {player.verdict()} and is not asked; choose another number "
-                                  "(bin/observer_players table), or write leave_out or count as the rule for failed checks")
-            (left_out if player.failed and rule == "leave_out" else found).append(player)
+        try:
+            failures = pool.map(lambda player: failing(player, first_only), asked)  # in order
+            for player in players:
+                if player.number is not None:
+                    failed = known.get((player.population, player.number))
+                    if failed is None:
+                        failed, done = next(failures), done + 1
+                        if done % REPORTED == 0:
+                            report(f"{done} of {len(asked)} players are checked")
+                    player = dataclasses.replace(player, failed=failed)
+                    if failed and rule == "count":
+                        report(f"{player.words()} fails the checks {player.verdict()}; its results are not those of a player that is like people")
+                    if failed and rule == "require":
+                        raise Refusal(f"{player.words()} fails check {player.verdict()} and is not asked; choose another number "
+                                      "(bin/observer_players table), or write leave_out or count as the rule for failed checks")
+                (left_out if player.failed and rule == "leave_out" else found).append(player)
+        except BaseException:  # also Ctrl-C: players whose checks have not begun are not checked
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     if left_out:
         report(f"{len(left_out)} of {len(players)} players fail a check and are not asked: " + named(left_out))
     if not found:

@@ -119,7 +119,13 @@ class Players(unittest.TestCase):
             with self.assertRaisesRegex(Refusal, "observer:3 "):
                 players.checked(players.several("observer", "0-999", 1, 0), "require")
         self.assertEqual(asked, [0, 1, 2, 3])
-        self.assertTrue(pool.return_value.__enter__.return_value.shutdown.call_args.kwargs["cancel_futures"])
+        shutdown = pool.return_value.__enter__.return_value.shutdown
+        self.assertTrue(shutdown.call_args.kwargs["cancel_futures"])
+        shutdown.reset_mock()
+        with mock.patch.object(players, "failing", side_effect=KeyboardInterrupt), mock.patch("concurrent.futures.ThreadPoolExecutor", pool):
+            with self.assertRaises(KeyboardInterrupt):
+                players.checked(players.several("observer", "0-999", 1, 0), "leave_out")
+        self.assertTrue(shutdown.call_args.kwargs["cancel_futures"])
 
     def test_progress_is_reported_after_each_twentieth_player(self):
         said = []
