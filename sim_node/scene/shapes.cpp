@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/height_map.h"
+#include "lcmtypes/turn_between.h"
 #include "sim_node/scene/materials/height_image.h"
 #include "sim_node/scene/meshes.h"
 #include "sim_node/scene/sdf/values.h"
@@ -58,7 +59,7 @@ void read_plane(const LoadContext& context, const sdf::Element& plane, ShapeDef&
   if (normal.norm() < 1e-6) context.reject(plane, "has a <normal> without direction");
   shape.size_m << (size ? sdf::vector2(*size) : Eigen::Vector2d(1, 1)), 1;
   // Normalized as libignition-math does, so that the world is the same to the bit.
-  shape.pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal / std::sqrt(normal.squaredNorm())));
+  shape.pose.rotate(turn_between(Eigen::Vector3d::UnitZ(), normal / std::sqrt(normal.squaredNorm())));
 }
 
 // Kind, sizes (unused ones are 1) and mesh.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lcmtypes/turn_between.h"
+
 namespace tactus::visual {
 
 Eigen::Matrix4f eye_from_camera() {
@@ -50,7 +52,7 @@ Eigen::Matrix4f look_along(const Eigen::Vector3d& position, const Eigen::Vector3
   const Eigen::Vector3d forward = direction.normalized();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = position;
-  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), forward).toRotationMatrix();
+  pose.linear() = turn_between(Eigen::Vector3d::UnitX(), forward).toRotationMatrix();
   return eye_from_camera() * pose.inverse().matrix().cast<float>();
 }
 

@@ -1,4 +1,5 @@
 // Scenes and measurement of the touch model of tools with a shape.
+#include "lcmtypes/turn_between.h"
 #include "tests/bench/sim_node/touch_shapes.h"
 
 #include <algorithm>
@@ -49,7 +50,7 @@ TriangleMesh mesh_of(const Soup& soup) {
 }
 
 Eigen::Isometry3d facing(const Vector3d& way, const Vector3d& place) {
-  Eigen::Isometry3d p(Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way));
+  Eigen::Isometry3d p(turn_between(Vector3d::UnitZ(), way));
   p.translation() = place;
   return p;
 }

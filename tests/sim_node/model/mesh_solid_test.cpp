@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "lcmtypes/turn_between.h"
 #include "tests/sim_node/support/meshes.h"
 
 using namespace tactus::sim;
@@ -141,7 +142,7 @@ TEST_CASE("An edge of any number of triangles takes time in proportion") {
 
 TEST_CASE("A thin diagonal rod has its own volume, not that of its bounding box") {
   TriangleMesh rod = mesh_of(box({1, 0.002, 0.002}));
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitX(), Vector3d(1, 1, 1));
+  const Eigen::Quaterniond turn = tactus::turn_between(Vector3d::UnitX(), Vector3d(1, 1, 1));
   for (Vector3d& v : rod.vertices) v = turn * v;
   CHECK(solid_of(rod).integral.volume_m3 == Approx(4e-6));
   CHECK(solid_of(rod).remark.empty());

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/turn_between.h"
 #include "tests/sim_node/support/hard_scenes.h"
 #include "tests/sim_node/support/meshes.h"
 #include "tests/sim_node/support/small_worlds.h"
@@ -69,7 +70,7 @@ struct Maker {
 
   int plane(const Vector3d& normal, const Vector3d& through = Vector3d::Zero()) {
     const int body = add_body(world, "side", 0, Eigen::Matrix3d::Identity(),
-                              pose(through, Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal)));
+                              pose(through, turn_between(Vector3d::UnitZ(), normal)));
     add_shape(world, body, ShapeKind::kPlane, {40, 40, 1}, friction, restitution);
     return body;
   }

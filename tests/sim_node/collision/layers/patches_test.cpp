@@ -1,5 +1,6 @@
 #include "sim_node/collision/layers/patches.h"
 
+#include "lcmtypes/turn_between.h"
 #include "tests/sim_node/support/contact_check.h"
 
 using namespace tactus::sim;
@@ -61,7 +62,7 @@ TEST_CASE("A cube on an edge, on a corner or between two walls has edge, point o
   CHECK(edge[0].count == 2);
 
   Isometry3d on_corner(Eigen::Translation3d(0.003, 0.001, 0.02 * std::sqrt(3.0) + 2e-4));
-  on_corner.rotate(Eigen::Quaterniond::FromTwoVectors(Vector3d(1, 1, 1), -Vector3d::UnitZ()));
+  on_corner.rotate(tactus::turn_between(Vector3d(1, 1, 1), -Vector3d::UnitZ()));
   const auto corner = patches_of(touching(floor, cube, on_corner));
   REQUIRE(corner.size() >= 1);
   CHECK(corner[0].kind == ContactKind::kPoint);
