@@ -185,7 +185,7 @@ class Sites(unittest.TestCase):
         summaries = self.record_at(["near"], 3)
         self.assertEqual(0, summaries["near"]["contacts"]["by_modality"]["audio"]["lost"])
         for node in ("sim_node", "haptic_node", "audio_node"):
-            self.assertEqual("running", self.r.node_states.state(node), f"{node}: {self.note(node)}")
+            self.wait(lambda: self.r.node_states.state(node) == "running", f"{node} runs without the disconnected site: {self.note(node)}")
         self.r.lab.hosts["far"].mend()
         self.expect_whole()
         self.assertEqual(before, self.incarnations())
