@@ -50,9 +50,9 @@ class Decimator::Compared : public Comparison {
 class Decimator::Motion : public Comparison {
  public:
   explicit Motion(const DeadbandDef& deadband) : sender_(deadband) {}
-  void push(std::span<const std::uint8_t> message, HostTime, std::vector<std::vector<std::uint8_t>>& out) override {
+  void push(std::span<const std::uint8_t> message, HostTime arrival, std::vector<std::vector<std::uint8_t>>& out) override {
     const auto m = decode<tool_state_t>(message.data(), message.size());
-    if (m && sender_.send(*m)) out.emplace_back(message.begin(), message.end());
+    if (m && sender_.send(*m, arrival)) out.emplace_back(message.begin(), message.end());
   }
 
  private:

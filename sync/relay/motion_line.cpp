@@ -13,14 +13,9 @@ namespace tactus::sync {
 namespace {
 
 constexpr std::int64_t kMaxGap = 1'000'000;        // of numbers; a larger one is wrong
-constexpr std::int64_t kClockStep_ns = 1'000'000'000;   // a clock that falls back by more was wrong before, or is another one
 
-// A repetition, or overtaken: number and time are not newer.
-bool is_old(const header_t& h, const header_t& newest) {
-  return h.seq <= newest.seq && h.publish_time_ns <= newest.publish_time_ns && newest.publish_time_ns - h.publish_time_ns <= kClockStep_ns;
-}
-
-SimTime published_at(const tool_state_t& m) { return sim_time(m.header.publish_time_ns); }
+SimTime published_at(const header_t& h) { return sim_time(h.publish_time_ns); }
+SimTime published_at(const tool_state_t& m) { return published_at(m.header); }
 
 }  // namespace
 
@@ -29,14 +24,13 @@ bool carries_motion(const PassRule& rule) {
   return rule.channel == channels::kToolState && deadband && deadband->quantity != Quantity::kForce && deadband->resend_s > 0;
 }
 
-bool MotionSender::send(const tool_state_t& m) {
+bool MotionSender::send(const tool_state_t& m, HostTime arrival) {
   if (tools_.size() >= kMaxTools && !tools_.contains(m.tool)) tools_.clear();
-  const auto [it, is_new] = tools_.try_emplace(m.tool, Tool{Deadband(def_), m.header});
-  Tool& tool = it->second;
-  if (!is_new && is_old(m.header, tool.newest)) return false;
+  Tool& tool = tools_.try_emplace(m.tool, Tool{Deadband(def_), NewestMessage(from_seconds(def_.resend_s))}).first->second;
+  const SimTime before = tool.newest.has_one() ? published_at(tool.newest.header()) : published_at(m);
+  if (tool.newest.is_old(m.header, arrival)) return false;
   // A time ahead was wrong: the deadband would wait for it.
-  if (m.header.publish_time_ns < tool.newest.publish_time_ns) tool.deadband = Deadband(def_);
-  tool.newest = m.header;
+  if (published_at(m) < before) tool.deadband = Deadband(def_);
   return tool.deadband.send(published_at(m), signals_of(m), to_eigen(m.proxy_velocity_m_s).norm());
 }
 
@@ -45,14 +39,15 @@ bool MotionReceiver::push(std::span<const std::uint8_t> message, HostTime arriva
   if (!m) return false;
   const Key key{m->header.source, m->tool};
   if (hands_.size() >= kMaxHands && !hands_.contains(key)) hands_.clear();
-  const auto [it, is_new] = hands_.try_emplace(key);
+  const auto [it, is_new] = hands_.try_emplace(key, def_);
   Hand& hand = it->second;
   const header_t& before = hand.newest.header;
   if (is_new || before.incarnation != m->header.incarnation) {
-    hand = {};
+    hand = Hand(def_);
     hand.seq = m->header.seq;
+    hand.numbers.is_old(m->header, arrival);
   } else {
-    if (is_old(m->header, before)) return true;
+    if (hand.numbers.is_old(m->header, arrival)) return true;
     if (const std::int64_t lost = m->header.seq - before.seq - 1; lost > 0 && lost <= kMaxGap) hand.seq += lost;
     if (const double passed_ns = static_cast<double>(m->header.publish_time_ns - before.publish_time_ns); passed_ns > 0)
       hand.sim_per_publish = std::clamp(static_cast<double>(m->header.sim_time_ns - before.sim_time_ns) / passed_ns, 0.0, 1.0);

@@ -15,6 +15,7 @@
 
 #include "sync/degradation/deadband.h"
 #include "sync/degradation/motion_codec.h"
+#include "sync/relay/newest_message.h"
 #include "sync/relay/rules.h"
 #include "sync/time/time.h"
 
@@ -27,18 +28,18 @@ inline constexpr double kMaxMotionResend_s = 1;
 // time of resend.
 bool carries_motion(const PassRule& rule);
 
-// The sending end, for one sender. A message with a wrong number or time stops the motion that follows for at most a second.
+// The sending end, for one sender. A message with a wrong number or time stops the motion that follows for at most the time of resend.
 class MotionSender {
  public:
   explicit MotionSender(const DeadbandDef& deadband) : def_(deadband) {}
   // True when this message must be sent: never for a repetition, which the receiver would ignore.
-  bool send(const tool_state_t& m);
+  bool send(const tool_state_t& m, HostTime arrival);
 
  private:
   static constexpr std::size_t kMaxTools = 64;  // more come only from corrupt messages
   struct Tool {
     Deadband deadband;
-    header_t newest{};
+    NewestMessage newest;
   };
   DeadbandDef def_;
   std::map<std::int32_t, Tool> tools_;
@@ -59,6 +60,8 @@ class MotionReceiver {
 
  private:
   struct Hand {
+    explicit Hand(const DeadbandDef& deadband) : numbers(from_seconds(deadband.resend_s)) {}
+    NewestMessage numbers;
     tool_state_t newest{};        // as sent
     HostTime arrival{};           // of it
     double sim_per_publish = 1;   // rate of simulated time over publication time, between the two newest messages; at first, of a world that runs

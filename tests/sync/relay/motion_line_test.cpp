@@ -218,9 +218,11 @@ TEST_CASE("Two hands of one sender keep their own motions") {
 TEST_CASE("A message of a hand with a wrong number or time stops its motion for 60 ms at most") {
   using Change = void (*)(header_t&);
   constexpr std::int64_t kLatest_ns = 1'000'000'000'000'000'000;
-  const std::array<std::pair<const char*, Change>, 9> changes{{
+  const std::array<std::pair<const char*, Change>, 11> changes{{
       {"half a second ahead", [](header_t& h) { h.publish_time_ns += 500'000'000; }},
       {"half a second ahead, with a later number", [](header_t& h) { h.publish_time_ns += 500'000'000, h.seq += 2; }},
+      {"half a second and a thousand numbers ahead", [](header_t& h) { h.publish_time_ns += 500'000'000, h.seq += 1000; }},
+      {"a second and all numbers ahead", [](header_t& h) { h.publish_time_ns += 999'000'000, h.seq = std::numeric_limits<std::int64_t>::max(); }},
       {"ten seconds ahead", [](header_t& h) { h.publish_time_ns += 10'000'000'000; }},
       {"at the end of time", [](header_t& h) { h.publish_time_ns = kLatest_ns; }},
       {"at the begin of time", [](header_t& h) { h.publish_time_ns = 0; }},
