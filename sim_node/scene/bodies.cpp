@@ -46,6 +46,17 @@ void read_surface(const LoadContext& context, const sdf::Element* collision, int
     shape.restitution = in_range(*bounce, sdf::number(*bounce), 0, 1);
 }
 
+// Planes and heightmaps are made for the ground. On a body that moves, a plane is a thin plate, and neither touches another ground.
+void warn_of_moving_ground(const LoadContext& context, const sdf::Element& link) {
+  for (const sdf::Element& collision : link.children("collision")) {
+    const sdf::Element* geometry = collision.child("geometry");
+    for (const char* kind : {"plane", "heightmap"})
+      if (sdf::child_of(geometry, kind))
+        context.warn(collision, "is a " + std::string(kind) + " of a body that moves: it does not touch other planes and heightmaps; set <static> of the model, or use a " +
+                                    (kind == std::string_view("plane") ? "<box>" : "<mesh>"));
+  }
+}
+
 // Material that the mesh file names; -1: none.
 int file_material(LoadContext& context, const sdf::Element& collision) {
   const sdf::Element* mesh = sdf::child_of(collision.child("geometry"), "mesh");
@@ -116,6 +127,7 @@ int add_link(LoadContext& context, const sdf::Element& link, const Eigen::Isomet
   body.is_static = is_static;
   body.pose = model_pose * context.resolve(link);
   const std::size_t first_shape = context.world.shapes.size(), first_visual = context.world.visuals.size();
+  if (!is_static) warn_of_moving_ground(context, link);
   add_collisions(context, link, index, material);
   add_visuals(context, link, index, material);
   if (first_shape == context.world.shapes.size() && first_visual < context.world.visuals.size())

@@ -49,11 +49,11 @@ TEST_CASE("Every kind of geometry becomes its shape") {
   s = shape("<capsule><radius>0.5</radius><length>2</length></capsule>");
   CHECK(s.kind == ShapeKind::kCapsule);
   CHECK(s.size_m == Vector3d(0.5, 0, 2));
+  CHECK(file.warnings.empty());
   s = shape("<plane><normal>1 0 0</normal><size>4 5</size></plane>");
   CHECK(s.kind == ShapeKind::kPlane);
   CHECK(s.size_m == Vector3d(4, 5, 0));
   CHECK((s.pose.linear().col(2) - Vector3d::UnitX()).norm() < 1e-12);  // z of the shape is the normal
-  CHECK(file.warnings.empty());
 }
 
 TEST_CASE("A size of zero or less is rejected with its line") {
@@ -154,4 +154,18 @@ TEST_CASE("A mesh that is inside out touches like the right one, and a warning n
   };
   for (const WorldDef* w : {&a, &b})
     for (const double outwards : faces(*w)) CHECK(outwards == Approx(0.5));
+}
+
+TEST_CASE("A plane or heightmap of a body that moves causes a warning that names the collision") {
+  const auto warnings = [](const std::string& is_static, const std::string& geometry) {
+    SceneFile file(world("<model name='m'>" + is_static + "<link name='l'><inertial><mass>1</mass></inertial><collision name='c'><geometry>" + geometry +
+                         "</geometry></collision></link></model>"));
+    file.load();
+    return file.short_warnings();
+  };
+  const auto moving = warnings("", "<plane><size>1 1</size></plane>");
+  REQUIRE(moving.size() == 1);
+  CHECK_THAT(moving[0], Catch::Contains("collision[@name=\"c\"] is a plane of a body that moves") && Catch::Contains("use a <box>"));
+  CHECK(warnings("<static>true</static>", "<plane><size>1 1</size></plane>").empty());
+  CHECK(warnings("", "<box><size>1 1 1</size></box>").empty());
 }
