@@ -13,7 +13,6 @@
 namespace tactus::sync {
 namespace {
 
-constexpr std::int64_t kAnew_ns = 1'000'000'000;           // a clock that falls back by more means another sender
 constexpr std::size_t kSeqAt = 8 + 8 + 8 + 4 + 8 + 4 + 8;  // LCM's fingerprint and header_t before its last member
 
 // Big-endian, as LCM encodes.
@@ -75,11 +74,12 @@ std::unique_ptr<Decimator::Comparison> Decimator::comparison() const {
 }
 
 // Keeps the mean rate: a message that comes a little early need not wait for a whole period more.
-bool Decimator::due(Sender& s, const header_t& h) const {
+bool Decimator::due(Sender& s, const header_t& h, HostTime arrival) const {
   if (!rule_.thinning.rate || in_pages(rule_.channel)) return true;
+  const std::int64_t before_ns = s.newest.has_one() ? s.newest.header().publish_time_ns : h.publish_time_ns;
+  if (s.newest.is_old(h, arrival)) return false;
   const auto period_ns = static_cast<std::int64_t>(std::llround(1e9 / rule_.thinning.rate->rate_Hz));
-  if (h.publish_time_ns < s.newest_ns - kAnew_ns) s.next_ns = h.publish_time_ns;
-  s.newest_ns = h.publish_time_ns;
+  if (h.publish_time_ns < before_ns) s.next_ns = h.publish_time_ns;  // the time before was wrong
   if (h.publish_time_ns < s.next_ns) return false;
   s.next_ns = std::max(s.next_ns + period_ns, h.publish_time_ns);
   return true;
@@ -94,7 +94,7 @@ void Decimator::push(const header_t& h, std::span<const std::uint8_t> message, H
     sender.incarnation = h.incarnation;
     sender.comparison = comparison();
   }
-  if (!due(sender, h)) return;
+  if (!due(sender, h, arrival)) return;
   passing_.clear();
   if (!sender.comparison)
     passing_.emplace_back(message.begin(), message.end());

@@ -14,6 +14,7 @@
 #include <tactus/header_t.hpp>
 #include <vector>
 
+#include "sync/relay/newest_message.h"
 #include "sync/relay/rules.h"
 #include "sync/time/time.h"
 
@@ -33,6 +34,8 @@ class Decimator {
   void push(const header_t& header, std::span<const std::uint8_t> message, HostTime arrival, const Out& out);
 
  private:
+  // Messages on their way through one site overtake one another by less. Design.
+  static constexpr Nanoseconds kPatience{40'000'000};
   // The messages of one sender.
   class Comparison {
    public:
@@ -47,11 +50,12 @@ class Decimator {
   struct Sender {
     std::int64_t incarnation = 0;
     std::int64_t next_seq = 0;
-    std::int64_t next_ns = 0, newest_ns = 0;  // publish_time_ns of the next that passes; of the newest
+    std::int64_t next_ns = 0;  // publish_time_ns of the next that passes
+    NewestMessage newest{kPatience};
     std::unique_ptr<Comparison> comparison{};
   };
   std::unique_ptr<Comparison> comparison() const;
-  bool due(Sender& sender, const header_t& header) const;
+  bool due(Sender& sender, const header_t& header, HostTime arrival) const;
 
   PassRule rule_;
   std::map<std::int32_t, Sender> senders_;  // by header.source

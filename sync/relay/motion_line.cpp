@@ -26,7 +26,7 @@ bool carries_motion(const PassRule& rule) {
 
 bool MotionSender::send(const tool_state_t& m, HostTime arrival) {
   if (tools_.size() >= kMaxTools && !tools_.contains(m.tool)) tools_.clear();
-  Tool& tool = tools_.try_emplace(m.tool, Tool{Deadband(def_), NewestMessage(from_seconds(def_.resend_s))}).first->second;
+  Tool& tool = tools_.try_emplace(m.tool, Tool{Deadband(def_), NewestMessage(from_seconds(2 * def_.resend_s))}).first->second;
   const SimTime before = tool.newest.has_one() ? published_at(tool.newest.header()) : published_at(m);
   if (tool.newest.is_old(m.header, arrival)) return false;
   // A time ahead was wrong: the deadband would wait for it.

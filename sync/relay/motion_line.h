@@ -28,7 +28,7 @@ inline constexpr double kMaxMotionResend_s = 1;
 // time of resend.
 bool carries_motion(const PassRule& rule);
 
-// The sending end, for one sender. A message with a wrong number or time stops the motion that follows for at most the time of resend.
+// The sending end, for one sender. A message with a wrong number or time stops the motion that follows for at most twice the time of resend.
 class MotionSender {
  public:
   explicit MotionSender(const DeadbandDef& deadband) : def_(deadband) {}
@@ -60,7 +60,7 @@ class MotionReceiver {
 
  private:
   struct Hand {
-    explicit Hand(const DeadbandDef& deadband) : numbers(from_seconds(deadband.resend_s)) {}
+    explicit Hand(const DeadbandDef& deadband) : numbers(from_seconds(2 * deadband.resend_s)) {}
     NewestMessage numbers;
     tool_state_t newest{};        // as sent
     HostTime arrival{};           // of it

@@ -196,6 +196,26 @@ TEST_CASE("A thinned channel keeps its rate, and each sender has its own sequenc
   }
 }
 
+TEST_CASE("A message with a wrong number or time stops a thinned channel for 60 ms at most") {
+  for (const auto& [number, ahead] : std::vector<std::pair<std::int64_t, Nanoseconds>>{
+           {0, 500ms}, {2, 500ms}, {1000, 500ms}, {1'000'000'000, 999ms}, {1000, 0ms}, {1000, 10s}, {0, 10s}, {0, -10s}}) {
+    INFO(number << " numbers and " << to_seconds(ahead) << " s ahead");
+    Relay relay(rules("<pass channel='TOOL_STATE' rate='60Hz'/>"), sites(1), kRun);
+    std::size_t passed_early = 0, passed = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const HostTime t = kBegin + i * 1ms;
+      relay.on_bus_message({"TOOL_STATE", encode(tool(i, t))}, false, t);
+      if (i == 300) relay.on_bus_message({"TOOL_STATE", encode(tool(i + number, t + ahead))}, false, t);
+      const std::size_t now = flushed(relay, t).size();
+      passed += now;
+      if (i > 300 && i <= 360) passed_early += now;
+    }
+    CHECK(passed_early >= 1);
+    CHECK(passed >= 60 - 4);
+    CHECK(passed <= 60 + 3);
+  }
+}
+
 TEST_CASE("A jittered sender at the permitted rate loses no message") {
   Relay relay(rules("<pass channel='NODE_HEALTH' rate='10Hz'/>"), sites(1), kRun);
   std::size_t passed = 0;
