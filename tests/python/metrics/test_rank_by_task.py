@@ -10,7 +10,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
-from tactus.information import estimate, pictures
+from tactus.information import degraded, estimate, pictures
 from tactus.metrics import ranking, tasks
 
 
@@ -73,7 +73,7 @@ class Tasks(unittest.TestCase):
         picture = {(n, c): random.integers(0, 255, 300).tolist() for n in (0, 1) for c in ("", "rate")}
         store = {f"t|{n}|visual|{c}|{2 if c else 0}": [[values, [], 0.0]] for (n, c), values in picture.items()}
         expected, presented = tasks.seen(task, options, store, tasks.UNDEGRADED, ("rate", 2.0))
-        noise = 255 * pictures.channel_sd(tasks.SIZE[0]) / tasks.SKIPPED
+        noise = 255 * pictures.channel_sd(degraded.SIZE[0]) / degraded.SKIPPED
         for a in (0, 1):
             for b in (0, 1):
                 distance = np.linalg.norm(np.array(picture[a, ""], float) - np.array(picture[b, "rate"], float)) / noise

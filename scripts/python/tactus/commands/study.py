@@ -5,7 +5,7 @@ from tactus.commands import prepare
 from tactus.paths import SCRIPTS
 
 VERBS = {"check": "tactus.study.check", "run": "tactus.study.run", "sweep": "tactus.sweep.main", "analyse": "tactus.analysis.main",
-         "replicate": "tactus.replication.main", "information": "tactus.information.main"}
+         "replicate": "tactus.replication.main", "information": "tactus.information.main", "battery": "tactus.battery.main"}
 USAGE = """Usage: tactus study VERB ...
 
   check STUDY.xml                        validates the file; prints the plan, its trials, the duration and the statistical power
@@ -14,6 +14,7 @@ USAGE = """Usage: tactus study VERB ...
   analyse FOLDER...                      computes fits, limits and one report from the results
   replicate [FILE...]                    repeats published experiments with simulated participants, and compares the results
   information [TASK]...                  measures the information that each sense carries about the hidden variable of a task, in bits
+  battery [TASK]...        asks a population of players how far each sense of a task can degrade
 
 STUDY.xml is a file, or the name of a shipped study:"""
 

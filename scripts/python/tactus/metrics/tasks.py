@@ -17,13 +17,11 @@ import tempfile
 import numpy as np
 
 from tactus import terminal
-from tactus.information import noise, percepts, pictures, rendering, sound, task_file, touch
+from tactus.information import degraded, noise, percepts, pictures, rendering, task_file
 from tactus.information.estimate import Observer, Percept
 from tactus.metrics import ranking
 from tactus.option_parser import OptionParser
-from tactus.paths import BIN
 from tactus.refusal import Refusal
-from tactus.rerender import render
 from tactus.study import quantities
 
 STORED = pathlib.Path(__file__).with_name("ranking_by_task.json")
@@ -31,9 +29,6 @@ STORED = pathlib.Path(__file__).with_name("ranking_by_task.json")
 LEVELS = {"delay": (100.0, 400.0), "jitter": (60.0,), "loss": (30.0, 70.0), "rate": (10.0, 2.0)}
 UNDEGRADED = ("", 0.0)
 CONDITIONS = [UNDEGRADED, *((operator, level) for operator, levels in LEVELS.items() for level in levels)]
-SIZE = (320, 240)  # of pictures
-SKIPPED = 4        # one pixel of four counts in each direction
-DECIMALS = 5       # of kept percepts; far below the noise of every percept
 
 
 def evenly(items, most):
@@ -57,41 +52,9 @@ def key_of(task, number, sense, condition):
     return "|".join((task.name, str(number), sense, condition[0], f"{condition[1]:g}"))
 
 
-def features(task, sense, folder, said, offset_ns):
-    """[(values, standard deviations, confused share)] of the percepts of a rendering of one sense; of pictures all pixels that count."""
-    if sense == "visual":
-        looks = pictures.read(folder / "video.mp4", folder / "frames.csv", *SIZE, offset_ns + task.windows[0][0] * 1e9, offset_ns + task.windows[-1][1] * 1e9)
-        return [(looks[:, ::SKIPPED, ::SKIPPED].reshape(-1).tolist(), [], 0.0)]
-    if sense == "audio":
-        first_ns = render.facts(said)["first_sample_ns"]
-        clock = np.array([[0.0, first_ns], [sound.read_channels(folder / "audio.wav")[1], first_ns + 1e9]])
-        of_window = lambda begin, end: sound.features(sound.read(folder / "audio.wav", clock, offset_ns + begin * 1e9, offset_ns + end * 1e9))
-    else:
-        of_window = {"haptic": touch.Touch, "thermal": touch.Warmth}[sense](folder / f"{sense}.csv").features
-    return [(np.round(values, DECIMALS).tolist(), list(sds), wrong) for window in task.windows for _, values, sds, wrong in of_window(*window)]
-
-
-def again(task, sense, log, condition, seed, offset_ns):
-    """features() of a sense that is rendered again from a log under a condition (operator, level). Raises Refusal."""
-    with tempfile.TemporaryDirectory() as scratch:
-        folder, profile = pathlib.Path(scratch), None
-        if condition != UNDEGRADED:
-            profile = str(folder / "profile.xml")
-            pathlib.Path(profile).write_text(f'<profile seed="{seed}">{quantities.degrade(sense, *condition)}</profile>\n', encoding="utf-8")
-        try:
-            said = render.render(render.command(str(BIN), sense, str(log), scratch, profile, None, {"visual": rendering.picture_settings(SIZE)}), lambda _: None)
-        except render.Refused as refused:
-            raise Refusal(str(refused)) from None
-        return features(task, sense, folder, said, offset_ns)
-
-
-def host_offset_ns(log, folder):
-    """Host time minus time of the world in a log, ns, from the ticks of touch. Raises Refusal."""
-    try:
-        render.render(render.command(str(BIN), "haptic", str(log), str(folder), None, None, {}), lambda _: None)
-    except render.Refused as refused:
-        raise Refusal(str(refused)) from None
-    return touch.Touch(pathlib.Path(folder) / "haptic.csv").offset_ns()
+def element(sense, condition):
+    """Element of a profile; "": undegraded."""
+    return "" if condition == UNDEGRADED else quantities.degrade(sense, *condition)
 
 
 def fill(task, options, store, save):
@@ -104,9 +67,9 @@ def fill(task, options, store, save):
         with tempfile.TemporaryDirectory() as scratch:
             place = pathlib.Path(scratch) / "run"
             rendering.simulate(task_file.changed_scene(task.scene, changes), task.scene.parent, place, task.seconds)
-            offset_ns = host_offset_ns(place / "run.lcmlog", scratch)
+            offset_ns = degraded.host_offset_ns(place / "run.lcmlog", scratch)
             for sense, condition in wanted:
-                store[key_of(task, number, sense, condition)] = again(task, sense, place / "run.lcmlog", condition, number + 1, offset_ns)
+                store[key_of(task, number, sense, condition)] = degraded.rendered(task, sense, place / "run.lcmlog", element(sense, condition), number + 1, offset_ns)
         save()
         terminal.report_error(f"tasks: {task.name}, {done + 1} of {len(mine)}")
 
@@ -123,7 +86,7 @@ def seen(task, options, store, *conditions):
     renderings have them: a degraded one may have fewer."""
     rows = [store[key_of(task, number, "visual", condition)][0][0] for condition in conditions for number, _ in chosen(task, options)]
     length = min(map(len, rows))
-    found = pictures.coordinates([np.array(row[:length]) for row in rows], SIZE[0]) * SKIPPED
+    found = pictures.coordinates([np.array(row[:length]) for row in rows], degraded.SIZE[0]) * degraded.SKIPPED
     return [Percept("visual", part.reshape(*shape(task, options), -1), np.ones((*shape(task, options), found.shape[1]))) for part in np.split(found, len(conditions))]
 
 

@@ -1,0 +1,118 @@
+"""tactus study battery: how far each sense can degrade in each shipped task before a population of players answers worse."""
+import argparse
+import concurrent.futures
+import functools
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+
+from tactus import players, signals, terminal
+from tactus.analysis import sensitivity
+from tactus.battery import answers, conditions, curves, perceivers, renderings, results
+from tactus.information import rendering, task_file
+from tactus.option_parser import OptionParser
+from tactus.refusal import Refusal, sentence_of
+from tactus.sweep import verdicts
+
+USAGE = """Renders each task under every operator and level of the senses that it is for, and asks a population of simulated players. For each operator, prints the level at which a player
+answers 10 percentage points worse: the median over the players with its 95 % interval, and the 10 % and 90 % quantiles; for naive players, who expect undegraded percepts, and for
+adapted ones. `detected` is the level that the same players notice in 75 % of pairs. The players have the noise of the population; the hand follows the path of the scene, so action is
+not part of the answer."""
+FEWEST_PLAYERS = 20  # of a distribution; design
+
+
+def parsed(words):
+    p = OptionParser(prog="tactus study battery", description=USAGE, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("tasks", nargs="*", metavar="TASK", help="a task file, or the name of a shipped task; default: all shipped tasks")
+    p.add_argument("--players", type=int, default=128, metavar="N", help="players of the population; default: 128")
+    p.add_argument("--verdicts", metavar="TABLE", help="table of `observer_players admit`: only players that pass all checks are asked; default: no checks")
+    p.add_argument("--draws", type=int, default=1200, metavar="N", help="answers of a player at a level; default: 1200")
+    p.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the draws; default: 1")
+    p.add_argument("--jobs", type=int, metavar="J", help="processes; default: one for each core")
+    p.add_argument("--keep", metavar="DIR", help="keep the renderings in DIR; a stopped command continues, and a second one begins with them")
+    p.add_argument("--out", metavar="DIR", help="write the tables limits.csv, players.csv, curves.csv and pairs.csv into DIR")
+    a = p.parse_args(words)
+    for name, value, least, most in (("--players", a.players, FEWEST_PLAYERS, players.MOST), ("--draws", a.draws, 30, 1_000_000), ("--seed", a.seed, 0, 2**53), ("--jobs", a.jobs, 1, 1024)):
+        if value is not None and not least <= value <= most:
+            raise Refusal(f"{name} {value}: is out of range; give {least} to {most}")
+    a.jobs = a.jobs or len(os.sched_getaffinity(0))
+    return a
+
+
+def asked(count, table):
+    """Numbers of the players of population 1. Raises Refusal."""
+    if not table:
+        return list(range(count))
+    known = verdicts.read(table)
+    numbers = [number for (population, number), failed in sorted(known.items()) if population == 1 and not failed][:count]
+    if len(numbers) < count:
+        raise Refusal(f"{table}: {len(numbers)} players of population 1 pass all checks, but --players is {count}; give --players {len(numbers)}, or check more players")
+    verdicts.verified(table, [players.Player(f"observer:{number}") for _, number in sorted(known)])
+    return numbers
+
+
+@functools.lru_cache(maxsize=1)
+def parts_of(task, folder):
+    """The features of a task, once in each process."""
+    return answers.Parts(renderings.Stored(task_file.read(task), folder))
+
+
+def curve(task, folder, sense, stage, operator, people, draws, seed):
+    """A curves.Curve, in a process of its own."""
+    return curves.measure(parts_of(task, folder), sense, stage, operator, people, draws, seed)
+
+
+def pair(task, folder, first, second, people, draws, seed):
+    return curves.frontier(parts_of(task, folder), (first, second), people, draws, seed)
+
+
+def play(tasks, folder, people, a):
+    """([Curve], [(task, first, second, right answers)]) of all tasks, senses and operators. Raises Refusal."""
+    with concurrent.futures.ProcessPoolExecutor(a.jobs) as pool:
+        wanted = [(name, task, sense, stage, operator) for name, task in tasks for sense in task.senses for stage, operator in conditions.curves(sense)]
+        running = [pool.submit(curve, name, folder, sense, stage, operator, people, a.draws, a.seed) for name, _, sense, stage, operator in wanted]
+        crossed = [(name, *both) for name, task in tasks if len(task.senses) == 2 for both in conditions.pairs(*task.senses)]
+        surfaces = [pool.submit(pair, name, folder, first, second, people, a.draws, a.seed) for name, first, second in crossed]
+        try:
+            for done, _ in enumerate(concurrent.futures.as_completed(running + surfaces), 1):
+                if done % 10 == 0 or done == len(running + surfaces):
+                    terminal.report_error(f"study battery: {done} of {len(running + surfaces)} operators are played")
+            return [one.result() for one in running], [(*which, one.result()) for which, one in zip(crossed, surfaces)]
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def run(a):
+    rendering.require_programs()
+    numbers = asked(a.players, a.verdicts)
+    properties = sensitivity.properties(1, numbers)
+    people = [perceivers.of_properties({name: float(values[i]) for name, values in properties.items()}) for i in range(len(numbers))]
+    tasks = [(name, task_file.read(name)) for name in a.tasks or task_file.shipped()]
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = str(pathlib.Path(a.keep or scratch).absolute())
+        renderings.render_all([task for _, task in tasks], folder, a.jobs)
+        found, surfaces = play(tasks, folder, people, a)
+    results.show(found, properties)
+    if a.out:
+        results.write(pathlib.Path(a.out), found, surfaces, numbers, properties)
+    return 0
+
+
+def stop(number, frame):
+    raise KeyboardInterrupt
+
+
+def main(words):
+    try:
+        a = parsed(words)
+        signals.handle([signal.SIGTERM], stop)
+        return run(a)
+    except KeyboardInterrupt:
+        print("study battery: interrupted", file=sys.stderr)
+        return 130
+    except (Refusal, OSError) as error:
+        terminal.report_refusal(f"study battery: {sentence_of(error) if isinstance(error, OSError) else error}")
+        return 1

@@ -1,0 +1,119 @@
+"""Renders the tasks under every condition, and keeps the features of the renderings in a folder, so that a stopped run continues.
+
+One file TASK_NUMBER.npz holds the features of one value and variant of a task: undegraded, and under each condition and draw, for each sense that the task is for. All
+players have the same renderings; their noise is added later (perceivers.py).
+"""
+import concurrent.futures
+import os
+import pathlib
+import tempfile
+import zipfile
+
+import numpy as np
+
+from tactus import terminal
+from tactus.battery import conditions
+from tactus.information import degraded, percepts, rendering, task_file
+from tactus.refusal import Refusal
+from tactus.study import quantities
+
+DRAWS_OF_ONE = 1000  # seeds of one rendering; design: more than conditions.SEEDS
+
+
+def key(sense, condition, seed):
+    return f"{sense}|{condition.operator}|{condition.level:g}|{condition.stage}|{seed}"
+
+
+def wanted(task):
+    """[(sense, condition, seed)] of the renderings of each value and variant."""
+    return [(sense, condition, seed) for sense in task.senses for condition in (conditions.UNDEGRADED, *conditions.of(sense)) for seed in condition.seeds]
+
+
+def element(sense, condition):
+    """Element of a profile; "": undegraded."""
+    return quantities.degrade(sense, condition.operator, condition.level, condition.stage) if condition.operator else ""
+
+
+def packed(sense, found):
+    """Arrays of the features of a rendering: pixels as bytes; else values, standard deviations, confused shares and names by component."""
+    if sense == "visual":
+        return {"": np.array(found[0][0], np.uint8)}
+    count = [len(values) for values, _, _, _ in found]
+    return {"": np.array([sum((list(values) for values, _, _, _ in found), []), sum((list(sds) for _, sds, _, _ in found), [])]),
+            "#wrong": np.repeat([wrong for _, _, wrong, _ in found], count), "#feature": np.repeat(np.arange(len(found)), count),
+            "#name": np.repeat([name for _, _, _, name in found], count)}
+
+
+def render(task, number, changes, folder):
+    """Writes the file of one value and variant, unless it is there. Raises Refusal."""
+    path = pathlib.Path(folder) / f"{task.name}_{number}.npz"
+    if is_complete(path, task):
+        return
+    arrays = {}
+    with tempfile.TemporaryDirectory() as scratch:
+        place = pathlib.Path(scratch) / "run"
+        rendering.simulate(task_file.changed_scene(task.scene, changes), task.scene.parent, place, task.seconds)
+        log = place / "run.lcmlog"
+        offset_ns = degraded.host_offset_ns(log, scratch)
+        for sense, condition, seed in wanted(task):
+            found = degraded.rendered(task, sense, log, element(sense, condition), DRAWS_OF_ONE * number + seed, offset_ns)
+            for name, array in packed(sense, found).items():
+                arrays[name and sense + name or key(sense, condition, seed)] = array
+    part = path.with_suffix(".part")
+    with open(part, "wb") as file:
+        np.savez_compressed(file, **arrays)
+    os.replace(part, path)
+
+
+def is_complete(path, task):
+    """Whether a file has every rendering that is wanted."""
+    try:
+        with np.load(path) as stored:
+            return {key(*one) for one in wanted(task)} <= set(stored.files)
+    except (OSError, ValueError, zipfile.BadZipFile):
+        return False
+
+
+def render_all(tasks, folder, jobs):
+    """Renders every value under every variant of all tasks. Raises Refusal."""
+    os.makedirs(folder, mode=0o700, exist_ok=True)
+    work = [(task, number, changes) for task in tasks for number, (_, _, changes) in enumerate(percepts.renderings(task))]
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        running = [pool.submit(render, task, number, changes, folder) for task, number, changes in work]
+        try:
+            for done, future in enumerate(concurrent.futures.as_completed(running), 1):
+                future.result()
+                if done % 10 == 0 or done == len(work):
+                    terminal.report_error(f"study battery: {done} of {len(work)} scenes are rendered")
+        except BaseException:
+            for future in running:
+                future.cancel()
+            raise
+
+
+class Stored:
+    """The features of all values and variants of a task. features(): arrays [value, variant, component]."""
+
+    def __init__(self, task, folder):
+        self.task = task
+        self.shape = (len(task.values), len(task.variants))
+        self.files = []
+        for number in range(self.shape[0] * self.shape[1]):
+            path = pathlib.Path(folder) / f"{task.name}_{number}.npz"
+            if not is_complete(path, task):
+                raise Refusal(f"{path}: does not hold all renderings of this version; remove it, and repeat the command")
+            with np.load(path) as stored:
+                self.files.append({name: stored[name] for name in stored.files})
+
+    def features(self, sense, condition, seed):
+        """(values, standard deviations) of a sense that has features."""
+        both = np.stack([file[key(sense, condition, seed)] for file in self.files], axis=1)
+        return tuple(part.reshape(*self.shape, -1) for part in both)
+
+    def columns(self, sense):
+        """(number of the feature, its name, confused share) of each component."""
+        return tuple(self.files[0][f"{sense}#{name}"] for name in ("feature", "name", "wrong"))
+
+    def pixels(self, condition, seed):
+        """[pixels] of all values and variants, in order."""
+        return [file[key("visual", condition, seed)] for file in self.files]

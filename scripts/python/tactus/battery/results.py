@@ -1,0 +1,107 @@
+"""Tables of the battery: one row for each task, sense and operator, one for each player, one for each level."""
+import csv
+import itertools
+import math
+
+import numpy as np
+
+from tactus import terminal
+from tactus.battery import answers, conditions, deciding, limits, perceivers
+
+QUANTILES = (0.1, 0.5, 0.9)
+
+
+def name_of(curve):
+    return f"{curve.sense}:{curve.stage}" if curve.stage else curve.sense
+
+
+def shown(limit, curve):
+    """A limit with its unit; < and >: milder than the mildest and severer than the severest level."""
+    if limit == limits.BELOW:
+        return f"<{conditions.written(curve.operator, curve.levels[0])}"
+    if limit == limits.ABOVE:
+        return f">{conditions.written(curve.operator, curve.levels[-1])}"
+    return conditions.written(curve.operator, float(f"{limit:.2g}"))
+
+
+def distribution(found, curve):
+    """{median, low, high, q10, q90} of the limits of the players."""
+    low, high = limits.median_interval(found, curve.levels)
+    q10, median, q90 = (limits.at_quantile(found, curve.levels, share) for share in QUANTILES)
+    return {"median": median, "low": low, "high": high, "q10": q10, "q90": q90}
+
+
+def decides(found, curve, properties):
+    """(property with the largest total index, the index, Q2) of the limits, or None when fewer than nine tenths of the players have a number."""
+    inside = [i for i, limit in enumerate(found) if limit not in (limits.BELOW, limits.ABOVE)]
+    if len(inside) < 0.9 * len(found):
+        return None
+    names = (*perceivers.OF_SENSE[curve.sense], "lapse")
+    total, q2 = deciding.total_indices({name: np.asarray(properties[name])[inside] for name in names}, [found[i] for i in inside])
+    if total is None:
+        return None
+    best = max(total, key=total.get)
+    return best, total[best], q2
+
+
+def summary(curve, properties):
+    """One row of limits.csv: texts and numbers by name."""
+    naive, adapted, detected = curve.limits(answers.NAIVE), curve.limits(answers.ADAPTED), curve.thresholds()
+    row = {"task": curve.task, "sense": curve.sense, "stage": curve.stage, "operator": curve.operator, "unit": conditions.unit(curve.operator), "undegraded": float(np.mean(curve.undegraded))}
+    for name, found in ((answers.NAIVE, naive), (answers.ADAPTED, adapted), ("detected", detected)):
+        row.update({f"{name} {key}": shown(value, curve) for key, value in distribution(found, curve).items()})
+        row[f"{name} unreached"] = float(np.mean([limit == limits.ABOVE for limit in found]))
+    ratios = [limits.tolerated(limit, threshold, curve.levels) for limit, threshold in zip(naive, detected)]
+    finite = [ratio for ratio in ratios if 0 < ratio < math.inf]
+    row["naive limit / detected"] = float(np.median(finite)) if len(finite) > len(ratios) / 2 else ""
+    row["limit before detection"] = float(np.mean([ratio < 1 for ratio in ratios]))
+    deciding_property = decides(naive, curve, properties)
+    row.update(dict(zip(("deciding property", "total index", "explained of left out"), deciding_property or ("", "", ""))))
+    return row
+
+
+def show(found, properties):
+    terminal.show(f"{'task':30} {'sense':13} {'operator':10} {'naive, median [95 %]':24} {'10 %, 90 %':18} {'adapted, median [95 %]':24} {'10 %, 90 %':18} {'detected':>9} {'before':>6}  decided by")
+    for curve in found:
+        row = summary(curve, properties)
+        cells = "".join(f" {'{0} [{1}, {2}]'.format(*(row[f'{name} {key}'] for key in ('median', 'low', 'high'))):24} {'{0}, {1}'.format(*(row[f'{name} {key}'] for key in ('q10', 'q90'))):18}"
+                        for name in answers.EXPECTATIONS)
+        by = f"{row['deciding property']} {row['total index']:.2f}" if row["deciding property"] else "-"
+        terminal.show(f"{curve.task:30} {name_of(curve):13} {curve.operator:10}{cells} {row['detected median']:>9} {100 * row['limit before detection']:5.0f}%  {by}")
+
+
+def text(value):
+    """A cell of a table: numbers with four digits."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def write_table(path, rows):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({name: text(value) for name, value in row.items()} for row in rows)
+
+
+def write(folder, found, surfaces, numbers, properties):
+    """Writes limits.csv, players.csv, curves.csv, and pairs.csv when two senses were degraded together."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_table(folder / "limits.csv", [summary(curve, properties) for curve in found])
+    write_table(folder / "players.csv", [of_player(curve, number, *limits_of) for curve in found
+                                         for number, *limits_of in zip(numbers, curve.limits(answers.NAIVE), curve.limits(answers.ADAPTED), curve.thresholds(), curve.undegraded)])
+    write_table(folder / "curves.csv", [of_level(curve, i) for curve in found for i in range(len(curve.levels))])
+    if surfaces:
+        write_table(folder / "pairs.csv", [{"task": task, "first": a[0], "second": b[0], "operator": a[1], "first level": a[2][i], "second level": b[2][j], "right": float(right[i, j])}
+                                           for task, a, b, right in surfaces for i, j in itertools.product(range(len(a[2])), range(len(b[2])))])
+
+
+def of_player(curve, number, naive, adapted, detected, undegraded):
+    return {"player": number, "task": curve.task, "sense": curve.sense, "stage": curve.stage, "operator": curve.operator, "undegraded": float(undegraded), "naive": float(naive),
+            "adapted": float(adapted), "detected": float(detected)}
+
+
+def of_level(curve, i):
+    """The mean and the 10 % and 90 % quantiles over the players at a level."""
+    row = {"task": curve.task, "sense": curve.sense, "stage": curve.stage, "operator": curve.operator, "level": float(curve.levels[i])}
+    for name, table in (*curve.success.items(), ("detected", curve.detected)):
+        row.update({f"{name} mean": float(table[:, i].mean()), f"{name} q10": float(np.quantile(table[:, i], 0.1)), f"{name} q90": float(np.quantile(table[:, i], 0.9))})
+    return row
