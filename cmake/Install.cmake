@@ -13,7 +13,7 @@ set(TACTUS_INCLUDE_DIR include/tactus)  # holds the source folders, and tactus/N
 set(runtime_programs sim_node haptic_node audio_node visual_node thermal_node recorder sync_node summarise watch export_csv export_events
   export_log degrade playout set simulation spy upgrade_log replay live_server message_types probe_pairs relay save_pictures
   check_sounds convert_geometry read_geometry read_pictures read_sounds draw_text thermal_device virtual_time simulated_player)
-set(studies_programs trial_runner play_games experiment_trials)
+set(studies_programs trial_runner play_games experiment_trials observer_players)
 foreach(component runtime studies)
   foreach(program IN LISTS ${component}_programs)
     if(TARGET ${program})

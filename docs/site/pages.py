@@ -21,7 +21,7 @@ NAV = (
                   "concepts/logs.md", "glossary.md")),
     ("Reference", ("reference/README.md", "reference/command_line.md", "settings.md", "scene_format.md", "commands.md", "reference/operators.md", "reference/study_elements.md",
                    "results.md", "export.md", "study_formats.md", "reference/messages.md", "reference/channels.md")),
-    ("Results", ("how_far.md", "how_far/with_people.md", "how_far/stage_model.md", "contact_laws.md", "contact_laws/peers.md", "growth.md", "visuals.md")),
+    ("Results", ("how_far.md", "how_far/battery.md", "how_far/with_people.md", "how_far/stage_model.md", "contact_laws.md", "contact_laws/peers.md", "growth.md", "visuals.md")),
     ("Laboratory", ("safety.md", "security.md", "between_sites.md")),
     ("Development", ("architecture.md", "event_path.md", "adding_a_modality.md", "debugging.md")),
 )

@@ -97,7 +97,7 @@ void check_scene_setting(const SettingRow& row, std::string_view value) {
   const std::string_view base = unit == "count" ? "1" : unit;
   const double wanted = parse_quantity(value, base), limit = parse_quantity(row.initial, base);
   if (safety == "max" ? wanted <= limit : wanted >= limit) return;
-  throw std::invalid_argument(sentence_begin(row, value) + "a scene may only tighten this safety limit, to " +
+  throw std::invalid_argument(sentence_begin(row, value) + "a scene or `tactus set` may only tighten this safety limit, to " +
                               number_text(limit) + unit_text(unit) + (safety == "max" ? " or less" : " or more") +
                               "; loosen it with --set on the node's own command line");
 }

@@ -150,7 +150,7 @@ TEST_CASE("A scene can tighten a safety limit, and only the command line can loo
     CHECK(e.coldest_degC == 15);
     REQUIRE(refused.size() == 2);
     CHECK(refused[0] ==
-          "me: setting \"hottest\" = \"42.5\": a scene may only tighten this safety limit, to 42 degC or less; "
+          "me: setting \"hottest\" = \"42.5\": a scene or `tactus set` may only tighten this safety limit, to 42 degC or less; "
           "loosen it with "
           "--set on the node's own command line");
     CHECK(refused[1].find("to 15 degC or more") != std::string::npos);

@@ -11,7 +11,8 @@ COMMON = {
     "rate": (200, 100, 50, 25, 12.5, 6.25, 3, 1.5),
 }
 OF_SENSE = {
-    "visual": {"resolution": (0.5, 0.25, 0.12, 0.06, 0.03)},
+    # A picture is looked at four times a second, so shorter times do not show.
+    "visual": {"jitter": (20, 40, 80, 160), "loss": (25, 50, 75, 90), "rate": (12.5, 6.25, 3, 1.5), "resolution": (0.5, 0.25, 0.12, 0.06, 0.03)},
     "audio": {},
     "haptic": {"quantise": (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)},
     "thermal": {"response": (100, 200, 400, 800, 1600, 3200, 6400)},
@@ -39,7 +40,7 @@ UNDEGRADED = Condition()
 
 def curves(sense):
     """{(stage, operator): levels from mild to severe} of a sense."""
-    found = {("", operator): levels for operator, levels in (*COMMON.items(), *OF_SENSE[sense].items())}
+    found = {("", operator): levels for operator, levels in {**COMMON, **OF_SENSE[sense]}.items()}
     found.update({(stage, operator): levels for (of, stage), each in OF_STAGE.items() if of == sense for operator, levels in each.items()})
     return found
 
@@ -51,7 +52,7 @@ def of(sense):
 
 def pairs(first, second):
     """[((sense, operator, levels), (sense, operator, levels))] of two senses that are degraded together; level 0 is undegraded."""
-    return [tuple((sense, operator, (0, *COMMON[operator][1::2])) for sense in (first, second)) for operator in COMMON]
+    return [tuple((sense, operator, (0, *curves(sense)["", operator][1::2])) for sense in (first, second)) for operator in COMMON]
 
 
 def unit(operator):

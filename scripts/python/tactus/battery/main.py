@@ -10,7 +10,7 @@ import tempfile
 
 from tactus import players, signals, terminal
 from tactus.analysis import sensitivity
-from tactus.battery import answers, conditions, curves, perceivers, renderings, results
+from tactus.battery import answers, conditions, curves, figure, perceivers, renderings, results
 from tactus.information import rendering, task_file
 from tactus.option_parser import OptionParser
 from tactus.refusal import Refusal, sentence_of
@@ -32,7 +32,7 @@ def parsed(words):
     p.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the draws; default: 1")
     p.add_argument("--jobs", type=int, metavar="J", help="processes; default: one for each core")
     p.add_argument("--keep", metavar="DIR", help="keep the renderings in DIR; a stopped command continues, and a second one begins with them")
-    p.add_argument("--out", metavar="DIR", help="write the tables limits.csv, players.csv, curves.csv and pairs.csv into DIR")
+    p.add_argument("--out", metavar="DIR", help="write limits.csv, players.csv, curves.csv, pairs.csv and a figure of each operator into DIR")
     a = p.parse_args(words)
     for name, value, least, most in (("--players", a.players, FEWEST_PLAYERS, players.MOST), ("--draws", a.draws, 30, 1_000_000), ("--seed", a.seed, 0, 2**53), ("--jobs", a.jobs, 1, 1024)):
         if value is not None and not least <= value <= most:
@@ -88,7 +88,7 @@ def play(tasks, folder, people, a):
 def run(a):
     rendering.require_programs()
     numbers = asked(a.players, a.verdicts)
-    properties = sensitivity.properties(1, numbers)
+    properties = {name.rpartition(" [")[0]: values for name, values in sensitivity.properties(1, numbers).items()}
     people = [perceivers.of_properties({name: float(values[i]) for name, values in properties.items()}) for i in range(len(numbers))]
     tasks = [(name, task_file.read(name)) for name in a.tasks or task_file.shipped()]
     with tempfile.TemporaryDirectory() as scratch:
@@ -97,7 +97,10 @@ def run(a):
         found, surfaces = play(tasks, folder, people, a)
     results.show(found, properties)
     if a.out:
-        results.write(pathlib.Path(a.out), found, surfaces, numbers, properties)
+        folder = pathlib.Path(a.out)
+        results.write(folder, found, surfaces, numbers, properties)
+        for operator in dict.fromkeys(one.operator for one in found):
+            figure.draw(found, operator, folder / f"{operator}.svg")
     return 0
 
 

@@ -57,7 +57,7 @@ GROUPS = {
     ),
     "Results of a run": (
         Command("export", "makes tables of a log", "tactus.commands.export", options=("out", "json"),
-                examples=(("export out/first", "tables in out/first/tables"), ("export out/first --wide --out tables", "also one table of all variables"))),
+                examples=(("export out/first", "tables in out/first/tables"), ("export out/first --wide --out tables", "one row for each message, for PlotJuggler"))),
         Command("report", "makes one HTML page about one or several runs", "tactus.report.main", "report", options=("out", "json"),
                 examples=(("report out/first", "out/first/report.html"), ("report out/clean out/late --out both.html", "the second overlaid"))),
         Command("metrics", "prints how late, how coarse and how old the rendering of a run was", "tactus.metrics.main", "report", options=("json",),

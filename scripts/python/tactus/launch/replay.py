@@ -50,7 +50,7 @@ def parse(words, here):
     here = pathlib.Path(here)
     log = here / a.log  # for a folder, the program replay reads all parts
     if a.run and description.run_number(a.run) is None:
-        raise Refusal(f"--run {a.run}: is not the number of a run; see replay LOG --describe")
+        raise Refusal(f"--run {a.run}: is not the number of a run; give a whole number from 1, as in the column run of tactus export")
     run = [a.run] if a.run else []
     described = describe_log(log, *run)
     others = hands.processes(described["tools"])

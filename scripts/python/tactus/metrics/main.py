@@ -51,7 +51,7 @@ def arguments(words):
     for option, path in (("--csv", options.csv), ("--json", options.json)):
         own_files.require_writable(option, path, [*options.run, *([options.reference] if options.reference else [])])
     if description.run_number(options.number) is None:
-        raise Refusal(f"--run {options.number}: is not the number of a run; see replay LOG --describe")
+        raise Refusal(f"--run {options.number}: is not the number of a run; give a whole number from 1, as in the column run of tactus export")
     return options
 
 

@@ -43,7 +43,7 @@ def arguments(words):
     if len(options.name) > len(options.log):
         refuse(f"{len(options.name)} names for {len(options.log)} logs; give at most one --name for each log")
     if description.run_number(options.run) is None:
-        refuse(f"--run {options.run}: is not the number of a run; see replay LOG --describe")
+        refuse(f"--run {options.run}: is not the number of a run; give a whole number from 1, as in the column run of tactus export")
     folder = lambda log: os.path.abspath(log) if os.path.isdir(log) else os.path.dirname(os.path.abspath(log))
     options.out = options.out or os.path.join(folder(options.log[0]), "report.html")
     options.name += [os.path.basename(folder(log)) or log for log in options.log[len(options.name):]]

@@ -63,7 +63,7 @@ def arguments(words):
     if not os.path.isfile(options.log) and not (os.path.isdir(options.log) and glob.glob(os.path.join(glob.escape(options.log), "run*.lcmlog"))):
         refuse(f"{options.log} is neither a log nor the folder of a run; give the run.lcmlog of a run, or its folder")
     if description.run_number(options.run_number) is None:
-        refuse(f"--run {options.run_number}: is not the number of a run; see replay LOG --describe")
+        refuse(f"--run {options.run_number}: is not the number of a run; give a whole number from 1, as in the column run of tactus export")
     options.out = options.out or os.path.join(options.run, "rerendered")
     if os.path.exists(options.out) and (not os.path.isdir(options.out) or os.listdir(options.out)):
         refuse(f"{options.out} exists and is not empty; remove it or give another --out")

@@ -67,7 +67,7 @@ def arguments(words):
     if not os.path.isfile(options.log) and not (os.path.isdir(options.log) and glob.glob(os.path.join(glob.escape(options.log), "run*.lcmlog"))):
         raise Refusal(f"{options.log} is neither a log nor the folder of a run; give the run.lcmlog of a run, or its folder")
     if description.run_number(options.run_number) is None:
-        raise Refusal(f"--run {options.run_number}: is not the number of a run; see replay LOG --describe")
+        raise Refusal(f"--run {options.run_number}: is not the number of a run; give a whole number from 1, as in the column run of tactus export")
     for name, least, most in (("draws", 1, 200), ("seed", 0, 2**63 - 1)):
         text = getattr(options, name)
         value = tables.whole_number(text, least, most)
