@@ -35,7 +35,7 @@ class Command(unittest.TestCase):
         values = "".join("<value " + value[:value.index("</value>") + len("</value>")] for value in values)
         self.task = self.folder / "mine.task.xml"
         self.task.write_text(TASK.format(values), encoding="utf-8")
-        for patched in (mock.patch.object(conditions, "COMMON", LEVELS), mock.patch.object(conditions, "OF_STAGE", {})):
+        for patched in (mock.patch.object(conditions, "COMMON", LEVELS), mock.patch.object(conditions, "SEEDS", (1, 2))):
             patched.start()
             self.addCleanup(patched.stop)
 

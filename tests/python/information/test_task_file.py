@@ -168,6 +168,29 @@ class Features(unittest.TestCase):
         self.assertAlmostEqual(touch.stiffness_log(-60 * along + 0.3, along), math.log(60), places=9)
         self.assertEqual(0.0, touch.stiffness_log(np.ones(5), np.linspace(0, 1e-4, 5)))
 
+    def warmth(self, commanded_degC, late_s=0.0):
+        """Warmth of a display with this temperature at each time of the world, s, which is sent late_s later. The host is 1000 s ahead of the world."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "thermal.csv"
+            rows = [f"{i * 0.01:.2f},{1000 + i * 0.01 + late_s:.6f},0,0,33,{commanded_degC(i * 0.01):.9f}" for i in range(400)]
+            path.write_text("\n".join(["time_s,host_s,tool,material,skin_degC,commanded_degC", *rows]) + "\n", encoding="utf-8")
+            return touch.Warmth(path, 1000e9)
+
+    def test_warmth_is_the_temperature_that_the_display_presents_and_not_that_of_the_model(self):
+        floor = noise.values()["heat_floor"]
+        ramp = lambda slope: lambda t: 33 + slope * max(0.0, t - 1)
+        for slope in (-2.0, 0.5):
+            found = {name: values for name, values, _, _ in self.warmth(ramp(slope)).features(0, 3)}
+            self.assertEqual(([1.0], [math.copysign(1.0, slope)]), (found["felt"], found["sign"]))
+            self.assertAlmostEqual(math.log(abs(slope)), found["flow"][0], delta=0.12)  # the change before its detection counts, too
+        self.assertEqual([0.0], self.warmth(ramp(0.4 * floor)).features(0, 3)[0][1])
+
+    def test_warmth_that_is_sent_late_is_felt_late(self):
+        step = lambda t: 33 - (2.0 if t >= 1 else 0.0)
+        felt = lambda late_s, *window: self.warmth(step, late_s).features(*window)[0][1][0]
+        self.assertEqual((1, 0), (felt(0, 0.5, 1.5), felt(0, 1.5, 2.5)))
+        self.assertEqual((0, 1), (felt(0.8, 0.5, 1.5), felt(0.8, 1.5, 2.5)))
+
     def test_the_noise_of_pictures_makes_four_bright_pixels_just_noticeable(self):
         dark, bright = np.zeros((1, 48, 64, 3), np.uint8), np.zeros((1, 48, 64, 3), np.uint8)
         bright[0, 10:12, 10:12] = 255

@@ -10,7 +10,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
-from tactus.information import degraded, estimate, pictures
+from tactus.battery import answers, perceivers
 from tactus.metrics import ranking, tasks
 
 
@@ -53,31 +53,25 @@ class RankingByTask(unittest.TestCase):
 
 
 class Tasks(unittest.TestCase):
-    def test_values_are_chosen_evenly_with_both_ends(self):
-        self.assertEqual([0, 2, 5, 7], tasks.evenly(range(8), 4))
-        self.assertEqual([0, 1, 2], tasks.evenly(range(3), 4))
+    def test_the_conditions_of_a_task_are_those_of_the_typical_naive_player(self):
+        """A sound whose direction carries two values, and which a degradation removes."""
+        class Silent:
+            task = types.SimpleNamespace(name="t", senses=("audio",), values={"left": (), "right": ()})
+            shape = (2, 1)
 
-    def test_an_observer_that_expects_undegraded_percepts_answers_by_them(self):
-        # Four values, one percept with d' = 20 between neighbours: shifted by one step, every answer but the last is that of the neighbour.
-        expected = [estimate.Percept("haptic", np.arange(4.0).reshape(4, 1, 1), np.full((4, 1, 1), 0.05))]
-        shifted = [estimate.Percept("haptic", np.arange(4.0).reshape(4, 1, 1) + 1, np.full((4, 1, 1), 0.05))]
-        right = lambda presented: estimate.Observer(expected, 400, 1, 0.0, presented=presented).result(["haptic"])["success"]
-        self.assertEqual(1, right(None))
-        self.assertEqual(1, right(expected))
-        self.assertAlmostEqual(0.25, right(shifted), delta=1e-9)
+            def features(self, sense, condition, seed):
+                heard = np.full((2, 1, 1), 0.0 if condition.operator else 1.0)
+                return np.concatenate([heard, np.array([-60.0, 60.0]).reshape(2, 1, 1)], axis=2), np.ones((2, 1, 2))
 
-    def test_pictures_have_the_same_distances_in_common_coordinates(self):
-        options = types.SimpleNamespace(values=2, variants=1)
-        task = types.SimpleNamespace(name="t", values={"a": (), "b": ()}, variants=((),))
-        random = np.random.default_rng(2)
-        picture = {(n, c): random.integers(0, 255, 300).tolist() for n in (0, 1) for c in ("", "rate")}
-        store = {f"t|{n}|visual|{c}|{2 if c else 0}": [[values, [], 0.0]] for (n, c), values in picture.items()}
-        expected, presented = tasks.seen(task, options, store, tasks.UNDEGRADED, ("rate", 2.0))
-        noise = 255 * pictures.channel_sd(degraded.SIZE[0]) / degraded.SKIPPED
-        for a in (0, 1):
-            for b in (0, 1):
-                distance = np.linalg.norm(np.array(picture[a, ""], float) - np.array(picture[b, "rate"], float)) / noise
-                self.assertAlmostEqual(distance, float(np.linalg.norm(expected.mean[a, 0] - presented.mean[b, 0])), delta=1e-6 * distance)
+            def columns(self, sense):
+                return np.array([0, 1]), np.array(["heard", "direction"]), np.zeros(2)
+        found = tasks.conditions_of(answers.Parts(Silent()), 4000, 1)
+        self.assertEqual({"delay", "jitter", "loss", "rate"}, {c["operator"] for c in found})
+        for c in found:
+            self.assertAlmostEqual(1 - perceivers.TYPICAL.lapse / 2, c["undegraded"], delta=0.01)
+            self.assertAlmostEqual(0.5, c["success"], delta=0.03)
+            self.assertEqual((0.5, 4000), (c["chance"], c["games"]))
+            self.assertEqual(set(ranking.METRICS), set(c["metrics"]))
 
 
 if __name__ == "__main__":

@@ -1,59 +1,107 @@
 """Right answers of a player in a degraded task, and how well the player detects the degradation.
 
-The answers are those of an ideal observer (information/estimate.py) with the noise of the player. A *naive* player expects undegraded percepts. An *adapted* one expects those of the
-degradation: the same rendering where nothing is drawn; else renderings of other draws, and undegraded ones. Draws of percepts are the same for all
-players and conditions.
+The player chooses the value whose renderings make the percepts most likely, with its own noise. A *naive* player expects undegraded percepts. An *adapted* one expects those of the degradation,
+which it can for operators without draws. Percepts have outliers, so an unexpected percept misleads a player only as far as an outlier explains it. Where nothing is
+perceived, the other features of the sense count for nothing.
 """
 import dataclasses
+import math
 
 import numpy as np
 
 from tactus.battery import conditions, perceivers
-from tactus.information import degraded, estimate, pictures
+from tactus.information import degraded, pictures
 
 NAIVE, ADAPTED = "naive", "adapted"
 EXPECTATIONS = (NAIVE, ADAPTED)
+OUTLIERS = 0.01  # share of a feature that comes from anywhere; design: half the share of lapses
+BROAD = 10.0     # standard deviation of an outlier, as a multiple of the spread of the feature over the renderings; design
 
 
 @dataclasses.dataclass(frozen=True)
-class Part:
-    """Features of one sense with the same confused share. values, sds: arrays [value, variant, component] of the typical player."""
+class Feature:
+    """Components of one feature. values, sds: [value, variant, component] of the typical player. presence: [value, variant], whether anything is perceived; None: the feature is
+    this presence itself, or always there. wrong: share of percepts of another rendering."""
     sense: str
+    name: str
     values: np.ndarray
     sds: np.ndarray
-    columns: tuple
-    wrong: float
+    presence: object = None
+    wrong: float = 0.0
 
-    def percept(self, perceiver):
-        sds = self.sds * perceiver.factors.get("visual noise", 1.0) if self.sense == "visual" else perceivers.deviations(perceiver, self.sense, self.values, self.sds, self.columns)
-        return estimate.Percept(self.sense, self.values, sds, self.wrong)
+    @property
+    def is_presence(self):
+        return self.name in perceivers.PRESENCE
+
+    def deviations(self, perceiver):
+        """The standard deviations for a player; those of an absent feature have no meaning."""
+        return self.sds * perceiver.factors.get(perceivers.FEATURE_OF.get((self.sense, self.name)), 1.0)
 
 
-def draws_of(condition, expectation, seed):
-    """[(condition, seed)] of the renderings that a player expects when the draw `seed` of a condition is presented."""
-    if expectation == NAIVE or not condition.operator:
-        return [(conditions.UNDEGRADED, conditions.SEEDS[0])]
-    others = [(condition, other) for other in condition.seeds if other != seed]
-    return others + [(conditions.UNDEGRADED, conditions.SEEDS[0])] if others else [(condition, seed)]
+def features(stored, sense, condition, seed):
+    """[Feature] of a rendering of a sense that has no pictures, window after window."""
+    number, name, wrong = stored.columns(sense)
+    values, sds = stored.features(sense, condition, seed)
+    found, presence = [], None
+    for f in np.unique(number):
+        pick = number == f
+        if name[pick][0] in perceivers.PRESENCE:
+            presence = values[:, :, pick][:, :, 0] > 0.5
+        found.append(Feature(sense, str(name[pick][0]), values[:, :, pick], sds[:, :, pick], None if name[pick][0] in perceivers.PRESENCE else presence, float(wrong[pick][0])))
+    return found
+
+
+def log_normal(y, mean, sd):
+    """log density [draw, value, variant] of percepts y [draw, component] with independent components."""
+    z = (y[:, None, None, :] - mean) / sd
+    return -0.5 * np.sum(z * z, axis=-1) - np.sum(np.log(sd), axis=-1)
+
+
+def log_likelihood(y, heard, expected, perceiver):
+    """log p(percepts | value, variant) [draw, value, variant] of a Feature that is expected. heard: [draw], whether anything was perceived; None: always."""
+    if expected.is_presence:
+        same = (y[:, None, None, 0] > 0.5) == (expected.values[:, :, 0] > 0.5)
+        return np.where(same, math.log1p(-OUTLIERS), math.log(OUTLIERS))
+    sd = expected.deviations(perceiver)
+    there = np.ones(expected.values.shape[:2], bool) if expected.presence is None else expected.presence
+    if not there.any():
+        return np.zeros((len(y), *there.shape))
+    middle, spread = expected.values[there].mean(axis=0), expected.values[there].std(axis=0) + sd[there].mean(axis=0)
+    broad = log_normal(y, middle, BROAD * spread)
+    log_p = np.where(there, log_normal(y, expected.values, sd), broad)
+    if expected.wrong > 0:
+        any_p = np.logaddexp.reduce(log_p[:, there], axis=1) - math.log(there.sum())
+        log_p = np.logaddexp(math.log1p(-expected.wrong) + log_p, math.log(expected.wrong) + any_p[:, None, None])
+    log_p = np.logaddexp(math.log1p(-OUTLIERS) + log_p, math.log(OUTLIERS) + broad)
+    return log_p if heard is None else np.where(heard[:, None, None], log_p, 0.0)
+
+
+def drawn(presented, perceiver, values, variants, random):
+    """(percepts [draw, component], whether anything is perceived [draw] or None) of a Feature that is presented, for the renderings (values[i], variants[i])."""
+    v, e = values, variants
+    if presented.wrong > 0:
+        other = random.random(len(v)) < presented.wrong
+        anything = random.integers(presented.values.shape[0], size=len(v)), random.integers(presented.values.shape[1], size=len(v))
+        if presented.presence is not None:
+            other &= presented.presence[anything] & presented.presence[v, e]
+        v, e = np.where(other, anything[0], v), np.where(other, anything[1], e)
+    y = presented.values[v, e] + (0 if presented.is_presence else presented.deviations(perceiver)[v, e]) * random.standard_normal((len(v), presented.values.shape[2]))
+    return y, None if presented.presence is None else presented.presence[values, variants]
 
 
 class Parts:
-    """The features of a task under conditions of its senses, ready for players."""
+    """The features of a task under conditions of its senses."""
 
     def __init__(self, stored):
         self.stored = stored
         self.of_pictures = {}
 
-    def of(self, sense, draws, condition):
-        """[Part] of several renderings, one after the other along the variants. condition: that of the pictures among these draws, or undegraded."""
-        if sense == "visual":
-            values = np.concatenate([self.coordinates(condition)[draw] for draw in draws], axis=1)
-            return [Part(sense, values, np.ones(values.shape), (), 0.0)]
-        feature, name, wrong = columns = self.stored.columns(sense)
-        values, sds = (np.concatenate(each, axis=1) for each in zip(*(self.stored.features(sense, *draw) for draw in draws)))
-        chosen = [wrong == 0, *(feature == f for f in np.unique(feature[wrong > 0]))]
-        deviating = lambda pick: tuple(column[pick] for column in columns)
-        return [Part(sense, values[:, :, pick], sds[:, :, pick], deviating(pick), float(wrong[pick][0])) for pick in chosen if pick.any()]
+    def of(self, sense, condition, seed, together):
+        """[Feature] of a rendering. together: the condition whose pictures have common coordinates with the undegraded ones."""
+        if sense != "visual":
+            return features(self.stored, sense, condition, seed)
+        values = self.coordinates(together)[condition, seed]
+        return [Feature(sense, "pictures", values, np.ones(values.shape))]
 
     def coordinates(self, condition):
         """{(condition, seed): [value, variant, k]} of the pictures under a condition and undegraded, in common coordinates whose distances are d'. Looks count
@@ -71,68 +119,57 @@ class Question:
     """A task under one condition for each of some senses ({sense: condition}; others are undegraded) with one expectation, for many players."""
 
     def __init__(self, parts, degradations, expectation):
-        self.sides = []  # of each draw: ([expected Part], [presented Part])
-        seeds = max((condition.seeds for condition in degradations.values()), key=len, default=conditions.SEEDS[:1])
-        for seed in seeds:
-            drawn = {sense: degradations.get(sense, conditions.UNDEGRADED) for sense in parts.stored.task.senses}
-            one = {sense: seed if seed in condition.seeds else conditions.SEEDS[0] for sense, condition in drawn.items()}
-            expected = {sense: draws_of(condition, expectation, one[sense]) for sense, condition in drawn.items()}
-            count = max(map(len, expected.values()))
-            if any(count % len(draws) for draws in expected.values()):
-                raise ValueError("senses with 2 and 3 expected renderings cannot be combined")
-            both = ([], [])
-            for sense, condition in drawn.items():
-                both[0].extend(parts.of(sense, expected[sense] * (count // len(expected[sense])), condition))
-                both[1].extend(parts.of(sense, [(condition, one[sense])] * count, condition))
-            self.sides.append(both)
+        if expectation == ADAPTED and any(len(condition.seeds) > 1 for condition in degradations.values()):
+            raise ValueError("a player cannot be adapted to one draw")
+        self.shape = parts.stored.shape
+        self.sides = []  # of each draw: {sense: ([expected Feature], [presented Feature])}
+        for seed in max((condition.seeds for condition in degradations.values()), key=len, default=conditions.SEEDS[:1]):
+            side = {}
+            for sense in parts.stored.task.senses:
+                condition = degradations.get(sense, conditions.UNDEGRADED)
+                presented = parts.of(sense, condition, seed if seed in condition.seeds else conditions.SEEDS[0], condition)
+                side[sense] = presented if expectation == ADAPTED else parts.of(sense, conditions.UNDEGRADED, conditions.SEEDS[0], condition), presented
+            self.sides.append(side)
 
     def success(self, perceiver, draws, seed):
-        """Share of right answers of a player in about `draws` draws."""
-        right = []
-        for number, (expected, presented) in enumerate(self.sides):
-            observer = estimate.Observer([p.percept(perceiver) for p in expected], -(-draws // len(self.sides)), seed + number, perceiver.lapse,
-                                         presented=[p.percept(perceiver) for p in presented])
-            right.append(observer.judged(observer.senses)[1])
-        return float(np.mean(np.concatenate(right)))
+        """Share of right answers of a player in about `draws` draws. Among equal posteriors the answer is a random choice."""
+        return float(np.mean(np.concatenate([self.right(side, perceiver, -(-draws // len(self.sides)), np.random.default_rng(seed)) for side in self.sides])))
+
+    def right(self, side, perceiver, draws, random):
+        values, variants = np.arange(draws) % self.shape[0], random.integers(self.shape[1], size=draws)
+        total = np.zeros((draws, *self.shape))
+        for expected, presented in side.values():
+            attended = (random.random(draws) >= perceiver.lapse)[:, None, None]
+            for e, p in zip(expected, presented):
+                total += np.where(attended, log_likelihood(*drawn(p, perceiver, values, variants, random), e, perceiver), 0.0)
+        posterior = np.logaddexp.reduce(total, axis=2)
+        best = posterior >= posterior.max(axis=1, keepdims=True) - 1e-9
+        return best[np.arange(draws), values] / best.sum(axis=1)
 
 
 class Comparison:
-    """Detection of a degradation of one sense: one of two presentations of the same scene is degraded, and the player says which (2IFC). The player has met the
+    """Detection of a degradation of one sense: one of two presentations of the same scene is degraded, and the player answers which (2IFC). The player has met the
     degradation before, so the answer follows the likelihood ratio, and the share of right answers is the area below its ROC curve (Green and Swets 1966)."""
 
     def __init__(self, parts, sense, condition):
-        plain = [(conditions.UNDEGRADED, conditions.SEEDS[0])]
-        self.variants = parts.stored.shape[1]
-        self.sides = []
-        for seed in condition.seeds:
-            others = [(condition, other) for other in condition.seeds if other != seed] or [(condition, seed)]
-            self.sides.append(tuple(parts.of(sense, draws, condition) for draws in (plain, others, [(condition, seed)])))
+        self.shape = parts.stored.shape
+        self.plain, self.degraded = parts.of(sense, conditions.UNDEGRADED, conditions.SEEDS[0], condition), parts.of(sense, condition, conditions.SEEDS[0], condition)
 
     def right(self, perceiver, draws, seed):
-        """Share of right answers of a player with `draws` presentations of each kind of every value, variant and draw."""
+        """Share of right answers of a player with `draws` presentations of each kind of every value and variant."""
         random = np.random.default_rng(seed)
-        areas = []
-        for plain, others, presented in self.sides:
-            plain, others, presented = ([p.percept(perceiver) for p in side] for side in (plain, others, presented))
-            values, variants = (np.tile(i.reshape(-1), draws) for i in np.indices((plain[0].mean.shape[0], self.variants)))
-            shown = [self.ratio(side, plain, others, values, variants, random).reshape(draws, -1) for side in (presented, plain)]
-            areas.append(np.mean([area(shown[0][:, i], shown[1][:, i]) for i in range(shown[0].shape[1])]))
+        values, variants = (np.tile(i.reshape(-1), draws) for i in np.indices(self.shape))
+        shown = [self.ratio(side, perceiver, values, variants, random).reshape(draws, -1) for side in (self.degraded, self.plain)]
+        areas = [area(shown[0][:, i], shown[1][:, i]) for i in range(shown[0].shape[1])]
         return float((1 - perceiver.lapse) * np.mean(areas) + perceiver.lapse / 2)
 
-    def ratio(self, side, plain, others, values, variants, random):
+    def ratio(self, side, perceiver, values, variants, random):
         """log p(percepts | degraded) - log p(percepts | undegraded) of drawn percepts of known scenes (values[i], variants[i])."""
-        total = 0.0
-        n = len(values)
-        for shown, p, o in zip(side, plain, others):
-            v, e = values, variants
-            if shown.wrong > 0:
-                other = random.random(n) < shown.wrong
-                v = np.where(other, random.integers(shown.mean.shape[0], size=n), v)
-                e = np.where(other, random.integers(self.variants, size=n), e)
-            y = shown.mean[v, e] + shown.sd[v, e] * random.standard_normal((n, shown.mean.shape[2]))
-            log_o, log_p = (estimate.log_density(y, percept)[np.arange(n), values] for percept in (o, p))
-            of_scene = log_o.reshape(n, -1, self.variants)[np.arange(n), :, variants]
-            total = total + np.logaddexp.reduce(of_scene, axis=1) - np.log(of_scene.shape[1]) - log_p[np.arange(n), variants]
+        total = np.zeros(len(values))
+        for presented, plain, degraded_one in zip(side, self.plain, self.degraded):
+            percepts = drawn(presented, perceiver, values, variants, random)
+            of_scene = lambda expected: log_likelihood(*percepts, expected, perceiver)[np.arange(len(values)), values, variants]
+            total += of_scene(degraded_one) - of_scene(plain)
         return total
 
 

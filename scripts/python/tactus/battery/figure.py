@@ -25,6 +25,8 @@ def draw(found, operator, path):
     fig, axes = pyplot.subplots(figsize=(7.2, 0.8 + 0.42 * len(mine)), constrained_layout=True)
     for row, curve in enumerate(reversed(mine)):
         for offset, (name, each) in zip((0.2, 0, -0.2), ((answers.NAIVE, curve.limits(answers.NAIVE)), (answers.ADAPTED, curve.limits(answers.ADAPTED)), ("detected", curve.thresholds()))):
+            if each is None:
+                continue
             q10, median, q90 = (place(limits.at_quantile(each, curve.levels, share), curve.levels) for share in (0.1, 0.5, 0.9))
             mark, colour = MARK[name]
             axes.plot((q10, q90), (row + offset, row + offset), color=colour, linewidth=1.4)
@@ -38,7 +40,7 @@ def draw(found, operator, path):
     if levels[-1] < levels[0]:
         axes.invert_xaxis()
     axes.set_yticks(range(len(mine)))
-    axes.set_yticklabels([f"{curve.task.replace('_', ' ')}, {curve.sense}{':' + curve.stage if curve.stage else ''}" for curve in reversed(mine)])
+    axes.set_yticklabels([f"{curve.task.replace('_', ' ')}, {curve.sense}" for curve in reversed(mine)])
     axes.set_xlabel(f"{operator}, {conditions.unit(operator)}: limit of {len(mine[0].undegraded)} simulated players, median and 10 to 90 %")
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
     fig.savefig(path, metadata={"Date": None} if str(path).endswith(".svg") else None)

@@ -6,6 +6,7 @@ from scipy import stats
 
 BELOW, ABOVE = 0.0, math.inf  # severities of a limit below the mildest level, and of one that no level reaches
 CONFIDENCE = 0.95
+ROUNDING = 1e-9
 
 
 def rising(curve):
@@ -23,13 +24,13 @@ def crossing(levels, curve, margin):
     """The level from mild to severe at which a curve that never falls reaches a margin, linear over the logarithm of the level; BELOW: the mildest level exceeds it;
     ABOVE: no level reaches it."""
     fitted = rising(curve)
-    reached = np.flatnonzero(fitted >= margin)
+    reached = np.flatnonzero(fitted >= margin - ROUNDING)
     if not len(reached):
         return ABOVE
     i = reached[0]
     if i == 0:
         return BELOW
-    share = (margin - fitted[i - 1]) / (fitted[i] - fitted[i - 1])
+    share = min(1.0, (margin - fitted[i - 1]) / (fitted[i] - fitted[i - 1]))
     return float(levels[i - 1] * (levels[i] / levels[i - 1]) ** share)
 
 

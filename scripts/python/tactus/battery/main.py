@@ -18,7 +18,7 @@ from tactus.sweep import verdicts
 
 USAGE = """Renders each task under every operator and level of the senses that it is for, and asks a population of simulated players. For each operator, prints the level at which a player
 answers 10 percentage points worse: the median over the players with its 95 % interval, and the 10 % and 90 % quantiles; for naive players, who expect undegraded percepts, and for
-adapted ones. `detected` is the level that the same players notice in 75 % of pairs. The players have the noise of the population; the hand follows the path of the scene, so action is
+adapted ones. `detected` is the level that the same players notice in 75 % of pairs. Both are only for operators without draws. The players have the noise of the population; the hand follows the path of the scene, so action is
 not part of the answer."""
 FEWEST_PLAYERS = 20  # of a distribution; design
 
@@ -26,7 +26,7 @@ FEWEST_PLAYERS = 20  # of a distribution; design
 def parsed(words):
     p = OptionParser(prog="tactus study battery", description=USAGE, allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("tasks", nargs="*", metavar="TASK", help="a task file, or the name of a shipped task; default: all shipped tasks")
-    p.add_argument("--players", type=int, default=128, metavar="N", help="players of the population; default: 128")
+    p.add_argument("--players", type=int, default=91, metavar="N", help="players of the population; default: 91")
     p.add_argument("--verdicts", metavar="TABLE", help="table of `observer_players admit`: only players that pass all checks are asked; default: no checks")
     p.add_argument("--draws", type=int, default=1200, metavar="N", help="answers of a player at a level; default: 1200")
     p.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the draws; default: 1")
@@ -59,9 +59,9 @@ def parts_of(task, folder):
     return answers.Parts(renderings.Stored(task_file.read(task), folder))
 
 
-def curve(task, folder, sense, stage, operator, people, draws, seed):
+def curve(task, folder, sense, operator, people, draws, seed):
     """A curves.Curve, in a process of its own."""
-    return curves.measure(parts_of(task, folder), sense, stage, operator, people, draws, seed)
+    return curves.measure(parts_of(task, folder), sense, operator, people, draws, seed)
 
 
 def pair(task, folder, first, second, people, draws, seed):
@@ -71,8 +71,8 @@ def pair(task, folder, first, second, people, draws, seed):
 def play(tasks, folder, people, a):
     """([Curve], [(task, first, second, right answers)]) of all tasks, senses and operators. Raises Refusal."""
     with concurrent.futures.ProcessPoolExecutor(a.jobs) as pool:
-        wanted = [(name, task, sense, stage, operator) for name, task in tasks for sense in task.senses for stage, operator in conditions.curves(sense)]
-        running = [pool.submit(curve, name, folder, sense, stage, operator, people, a.draws, a.seed) for name, _, sense, stage, operator in wanted]
+        wanted = [(name, sense, operator) for name, task in tasks for sense in task.senses for operator in conditions.curves(sense)]
+        running = [pool.submit(curve, name, folder, sense, operator, people, a.draws, a.seed) for name, sense, operator in wanted]
         crossed = [(name, *both) for name, task in tasks if len(task.senses) == 2 for both in conditions.pairs(*task.senses)]
         surfaces = [pool.submit(pair, name, folder, first, second, people, a.draws, a.seed) for name, first, second in crossed]
         try:

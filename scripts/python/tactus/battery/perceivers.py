@@ -2,8 +2,6 @@
 import dataclasses
 import math
 
-import numpy as np
-
 from tactus.information import noise
 
 # {property of bin/observer_players: (property of noise.csv, factor of its unit)}.
@@ -12,7 +10,7 @@ OF_NOISE = {"visual noise": "visual_area", "azimuth noise": "azimuth", "force We
 # The properties that matter for a sense, beside the lapse.
 OF_SENSE = {"visual": ("visual noise",), "audio": ("azimuth noise",), "haptic": ("force Weber", "force direction noise", "stiffness Weber"), "thermal": ("thermal Weber",)}
 TYPICAL_VISUAL_DEG = 0.12  # of the typical player; noise.csv has the area of its noise, which is proportional to the noise of a place
-FEATURE_OF = {("audio", "direction"): "azimuth noise", ("haptic", "force"): "force Weber", ("haptic", "direction"): "force direction noise",
+FEATURE_OF = {("visual", "pictures"): "visual noise", ("audio", "direction"): "azimuth noise", ("haptic", "force"): "force Weber", ("haptic", "direction"): "force direction noise",
               ("haptic", "stiffness"): "stiffness Weber", ("thermal", "flow"): "thermal Weber"}
 PRESENCE = ("heard", "felt")  # features that are 1 when the sense perceives anything; without it, other features have no noise of the player
 
@@ -35,16 +33,3 @@ def of_properties(row):
     for name in ("azimuth noise", "force Weber", "stiffness Weber", "thermal Weber"):
         factors[name] = row[name] / typical[OF_NOISE[name]]
     return Perceiver(factors, row["lapse"])
-
-
-def deviations(perceiver, sense, values, sds, columns):
-    """The standard deviations [value, variant, component] of the features for a player, from the typical ones. columns: as of renderings.Stored."""
-    feature, name, _ = columns
-    found = np.array(sds)
-    present = np.zeros(values.shape[:2], bool)
-    for i, of in enumerate(name):
-        if of in PRESENCE:
-            present = values[:, :, i] > 0.5
-        factor = perceiver.factors.get(FEATURE_OF.get((sense, of)), 1.0)
-        found[:, :, i] = np.where(present, found[:, :, i] * factor, found[:, :, i])
-    return found

@@ -1,4 +1,5 @@
-"""Renders the tasks under every condition, and keeps the features of the renderings in a folder, so that a stopped run continues.
+"""Renders the tasks under every condition, and keeps the features of the renderings in a folder, so that a stopped run continues
+with the scenes that are left.
 
 One file TASK_NUMBER.npz holds the features of one value and variant of a task: undegraded, and under each condition and draw, for each sense that the task is for. All
 players have the same renderings; their noise is added later (perceivers.py).
@@ -8,6 +9,7 @@ import os
 import pathlib
 import tempfile
 import zipfile
+import zlib
 
 import numpy as np
 
@@ -15,23 +17,18 @@ from tactus import terminal
 from tactus.battery import conditions
 from tactus.information import degraded, percepts, rendering, task_file
 from tactus.refusal import Refusal
-from tactus.study import quantities
 
+VERSION = 2          # of the features
 DRAWS_OF_ONE = 1000  # seeds of one rendering; design: more than conditions.SEEDS
 
 
 def key(sense, condition, seed):
-    return f"{sense}|{condition.operator}|{condition.level:g}|{condition.stage}|{seed}"
+    return f"{sense}|{condition.operator}|{condition.level:g}|{seed}"
 
 
 def wanted(task):
     """[(sense, condition, seed)] of the renderings of each value and variant."""
     return [(sense, condition, seed) for sense in task.senses for condition in (conditions.UNDEGRADED, *conditions.of(sense)) for seed in condition.seeds]
-
-
-def element(sense, condition):
-    """Element of a profile; "": undegraded."""
-    return quantities.degrade(sense, condition.operator, condition.level, condition.stage) if condition.operator else ""
 
 
 def packed(sense, found):
@@ -47,31 +44,32 @@ def packed(sense, found):
 def render(task, number, changes, folder):
     """Writes the file of one value and variant, unless it is there. Raises Refusal."""
     path = pathlib.Path(folder) / f"{task.name}_{number}.npz"
-    if is_complete(path, task):
+    arrays = {name: array for name, array in stored(path).items() if name != "version"}
+    left = [one for one in wanted(task) if key(*one) not in arrays]
+    if not left:
         return
-    arrays = {}
     with tempfile.TemporaryDirectory() as scratch:
         place = pathlib.Path(scratch) / "run"
         rendering.simulate(task_file.changed_scene(task.scene, changes), task.scene.parent, place, task.seconds)
         log = place / "run.lcmlog"
         offset_ns = degraded.host_offset_ns(log, scratch)
-        for sense, condition, seed in wanted(task):
-            found = degraded.rendered(task, sense, log, element(sense, condition), DRAWS_OF_ONE * number + seed, offset_ns)
+        for sense, condition, seed in left:
+            found = degraded.rendered(task, sense, log, conditions.element(sense, condition, seed), DRAWS_OF_ONE * number + seed, offset_ns)
             for name, array in packed(sense, found).items():
                 arrays[name and sense + name or key(sense, condition, seed)] = array
     part = path.with_suffix(".part")
     with open(part, "wb") as file:
-        np.savez_compressed(file, **arrays)
+        np.savez_compressed(file, **arrays, version=VERSION)
     os.replace(part, path)
 
 
-def is_complete(path, task):
-    """Whether a file has every rendering that is wanted."""
+def stored(path):
+    """The arrays of a file by name; none when it is missing, damaged or of another version."""
     try:
-        with np.load(path) as stored:
-            return {key(*one) for one in wanted(task)} <= set(stored.files)
-    except (OSError, ValueError, zipfile.BadZipFile):
-        return False
+        with np.load(path) as file:
+            return {name: file[name] for name in file.files} if "version" in file.files and int(file["version"]) == VERSION else {}
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error):
+        return {}
 
 
 def render_all(tasks, folder, jobs):
@@ -100,10 +98,9 @@ class Stored:
         self.files = []
         for number in range(self.shape[0] * self.shape[1]):
             path = pathlib.Path(folder) / f"{task.name}_{number}.npz"
-            if not is_complete(path, task):
+            self.files.append(stored(path))
+            if not {key(*one) for one in wanted(task)} <= set(self.files[-1]):
                 raise Refusal(f"{path}: does not hold all renderings of this version; remove it, and repeat the command")
-            with np.load(path) as stored:
-                self.files.append({name: stored[name] for name in stored.files})
 
     def features(self, sense, condition, seed):
         """(values, standard deviations) of a sense that has features."""

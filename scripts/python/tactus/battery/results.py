@@ -9,10 +9,7 @@ from tactus import terminal
 from tactus.battery import answers, conditions, deciding, limits, perceivers
 
 QUANTILES = (0.1, 0.5, 0.9)
-
-
-def name_of(curve):
-    return f"{curve.sense}:{curve.stage}" if curve.stage else curve.sense
+KEYS = ("median", "low", "high", "q10", "q90")
 
 
 def shown(limit, curve):
@@ -45,29 +42,39 @@ def decides(found, curve, properties):
 
 
 def summary(curve, properties):
-    """One row of limits.csv: texts and numbers by name."""
+    """One row of limits.csv: texts and numbers by name; "" where an operator with draws has no value."""
     naive, adapted, detected = curve.limits(answers.NAIVE), curve.limits(answers.ADAPTED), curve.thresholds()
-    row = {"task": curve.task, "sense": curve.sense, "stage": curve.stage, "operator": curve.operator, "unit": conditions.unit(curve.operator), "undegraded": float(np.mean(curve.undegraded))}
+    row = {"task": curve.task, "sense": curve.sense, "operator": curve.operator, "unit": conditions.unit(curve.operator), "undegraded": float(np.mean(curve.undegraded)),
+           "largest loss": float(np.max(np.mean(curve.undegraded) - np.mean(curve.success[answers.NAIVE], axis=0)))}
     for name, found in ((answers.NAIVE, naive), (answers.ADAPTED, adapted), ("detected", detected)):
-        row.update({f"{name} {key}": shown(value, curve) for key, value in distribution(found, curve).items()})
-        row[f"{name} unreached"] = float(np.mean([limit == limits.ABOVE for limit in found]))
-    ratios = [limits.tolerated(limit, threshold, curve.levels) for limit, threshold in zip(naive, detected)]
-    finite = [ratio for ratio in ratios if 0 < ratio < math.inf]
-    row["naive limit / detected"] = float(np.median(finite)) if len(finite) > len(ratios) / 2 else ""
-    row["limit before detection"] = float(np.mean([ratio < 1 for ratio in ratios]))
+        row.update({f"{name} {key}": found and shown(value, curve) or "" for key, value in (distribution(found, curve) if found else dict.fromkeys(KEYS)).items()})
+        row[f"{name} unreached"] = float(np.mean([limit == limits.ABOVE for limit in found])) if found else ""
+    row.update({"limit / detected": "", "limit before detection": "", "compared": ""})
+    if detected:
+        compared = [ratio for ratio in (limits.tolerated(limit, threshold, curve.levels) for limit, threshold in zip(naive, detected)) if not math.isnan(ratio)]
+        row["compared"] = len(compared)
+        if len(compared) > len(naive) / 2:
+            row["limit / detected"], row["limit before detection"] = float(np.median(compared)), float(np.mean([ratio < 1 for ratio in compared]))
     deciding_property = decides(naive, curve, properties)
     row.update(dict(zip(("deciding property", "total index", "explained of left out"), deciding_property or ("", "", ""))))
     return row
 
 
 def show(found, properties):
-    terminal.show(f"{'task':30} {'sense':13} {'operator':10} {'naive, median [95 %]':24} {'10 %, 90 %':18} {'adapted, median [95 %]':24} {'10 %, 90 %':18} {'detected':>9} {'before':>6}  decided by")
+    terminal.show(f"{'task':30} {'sense':8} {'operator':10} {'naive, median [95 %]':24} {'10 %, 90 %':18} {'adapted, median [95 %]':24} {'10 %, 90 %':18} {'detected':>9} {'before':>6}  decided by")
     for curve in found:
         row = summary(curve, properties)
-        cells = "".join(f" {'{0} [{1}, {2}]'.format(*(row[f'{name} {key}'] for key in ('median', 'low', 'high'))):24} {'{0}, {1}'.format(*(row[f'{name} {key}'] for key in ('q10', 'q90'))):18}"
-                        for name in answers.EXPECTATIONS)
+        cells = "".join(f" {cell(row, name)}" for name in answers.EXPECTATIONS)
         by = f"{row['deciding property']} {row['total index']:.2f}" if row["deciding property"] else "-"
-        terminal.show(f"{curve.task:30} {name_of(curve):13} {curve.operator:10}{cells} {row['detected median']:>9} {100 * row['limit before detection']:5.0f}%  {by}")
+        before = "" if row["limit before detection"] == "" else f"{100 * row['limit before detection']:.0f}%"
+        terminal.show(f"{curve.task:30} {curve.sense:8} {curve.operator:10}{cells} {row['detected median'] or '-':>9} {before or '-':>6}  {by}")
+
+
+def cell(row, name):
+    """Median, interval and quantiles of one kind of limit as text."""
+    if not row[f"{name} median"]:
+        return f"{'-':24} {'-':18}"
+    return f"{'{0} [{1}, {2}]'.format(*(row[f'{name} {key}'] for key in ('median', 'low', 'high'))):24} {'{0}, {1}'.format(*(row[f'{name} {key}'] for key in ('q10', 'q90'))):18}"
 
 
 def text(value):
@@ -86,22 +93,26 @@ def write(folder, found, surfaces, numbers, properties):
     """Writes limits.csv, players.csv, curves.csv, and pairs.csv when two senses were degraded together."""
     folder.mkdir(parents=True, exist_ok=True)
     write_table(folder / "limits.csv", [summary(curve, properties) for curve in found])
-    write_table(folder / "players.csv", [of_player(curve, number, *limits_of) for curve in found
-                                         for number, *limits_of in zip(numbers, curve.limits(answers.NAIVE), curve.limits(answers.ADAPTED), curve.thresholds(), curve.undegraded)])
+    write_table(folder / "players.csv", [row for curve in found for row in of_players(curve, numbers)])
     write_table(folder / "curves.csv", [of_level(curve, i) for curve in found for i in range(len(curve.levels))])
     if surfaces:
         write_table(folder / "pairs.csv", [{"task": task, "first": a[0], "second": b[0], "operator": a[1], "first level": a[2][i], "second level": b[2][j], "right": float(right[i, j])}
                                            for task, a, b, right in surfaces for i, j in itertools.product(range(len(a[2])), range(len(b[2])))])
 
 
-def of_player(curve, number, naive, adapted, detected, undegraded):
-    return {"player": number, "task": curve.task, "sense": curve.sense, "stage": curve.stage, "operator": curve.operator, "undegraded": float(undegraded), "naive": float(naive),
-            "adapted": float(adapted), "detected": float(detected)}
+def of_players(curve, numbers):
+    """One row for each player; a limit of 0 is below the mildest level, and one of inf is not reached."""
+    columns = {"naive": curve.limits(answers.NAIVE), "adapted": curve.limits(answers.ADAPTED), "detected": curve.thresholds()}
+    return [{"player": number, "task": curve.task, "sense": curve.sense, "operator": curve.operator, "undegraded": float(curve.undegraded[i]),
+             **{name: float(values[i]) if values else "" for name, values in columns.items()}} for i, number in enumerate(numbers)]
 
 
 def of_level(curve, i):
     """The mean and the 10 % and 90 % quantiles over the players at a level."""
-    row = {"task": curve.task, "sense": curve.sense, "stage": curve.stage, "operator": curve.operator, "level": float(curve.levels[i])}
-    for name, table in (*curve.success.items(), ("detected", curve.detected)):
+    row = {"task": curve.task, "sense": curve.sense, "operator": curve.operator, "level": float(curve.levels[i])}
+    for name, table in ((answers.NAIVE, curve.success[answers.NAIVE]), (answers.ADAPTED, curve.success.get(answers.ADAPTED)), ("detected", curve.detected)):
+        if table is None:
+            row.update({f"{name} mean": "", f"{name} q10": "", f"{name} q90": ""})
+            continue
         row.update({f"{name} mean": float(table[:, i].mean()), f"{name} q10": float(np.quantile(table[:, i], 0.1)), f"{name} q90": float(np.quantile(table[:, i], 0.9))})
     return row

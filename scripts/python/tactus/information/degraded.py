@@ -24,7 +24,7 @@ def features(task, sense, folder, said, offset_ns):
         clock = np.array([[0.0, first_ns], [sound.read_channels(folder / "audio.wav")[1], first_ns + 1e9]])
         of_window = lambda begin, end: sound.features(sound.read(folder / "audio.wav", clock, offset_ns + begin * 1e9, offset_ns + end * 1e9))
     else:
-        of_window = {"haptic": touch.Touch, "thermal": touch.Warmth}[sense](folder / f"{sense}.csv").features
+        of_window = {"haptic": touch.Touch, "thermal": touch.Warmth}[sense](folder / f"{sense}.csv", offset_ns).features
     return [(np.round(values, DECIMALS).tolist(), list(sds), wrong, name) for window in task.windows for name, values, sds, wrong in of_window(*window)]
 
 

@@ -33,19 +33,19 @@ def log_density(y, percept):
     return log_p
 
 
-def log_likelihoods(percepts, values, variants, lapse, random, presented=None):
+def log_likelihoods(percepts, values, variants, lapse, random):
     """{sense: [draw, value, variant]} for drawn percepts of the renderings (values[i], variants[i]). A sense lapses, all its percepts together, with the
-    probability `lapse`; then it carries nothing. presented: the percepts that are drawn, in the same order, where the observer expects others; None: the same."""
+    probability `lapse`; then it carries nothing."""
     n = len(values)
     found = {}
-    for expected, percept in zip(percepts, presented or percepts):
+    for percept in percepts:
         shape = percept.mean.shape
         v, e = values, variants
         if percept.wrong > 0:
             other = random.random(n) < percept.wrong
             v, e = np.where(other, random.integers(shape[0], size=n), v), np.where(other, random.integers(shape[1], size=n), e)
         y = percept.mean[v, e] + percept.sd[v, e] * random.standard_normal((n, shape[2]))
-        found[percept.sense] = found.get(percept.sense, 0) + log_density(y, expected)
+        found[percept.sense] = found.get(percept.sense, 0) + log_density(y, percept)
     for sense in found:
         found[sense] = np.where((random.random(n) < lapse)[:, None, None], 0.0, found[sense])
     return found
@@ -105,15 +105,15 @@ def shapley(names, worth):
 
 class Observer:
     """Drawn percepts of all renderings, and the answers of an ideal observer with any of the senses. prior: of the values; default: all equal. The draws
-    are the same for every set of senses. presented: as of log_likelihoods."""
+    are the same for every set of senses."""
 
-    def __init__(self, percepts, draws, seed=1, lapse=0.0, prior=None, presented=None):
+    def __init__(self, percepts, draws, seed=1, lapse=0.0, prior=None):
         count, variants = percepts[0].mean.shape[:2]
         self.prior = np.full(count, 1 / count) if prior is None else np.asarray(prior, dtype=float)
         random = np.random.default_rng(seed)
         self.values = np.arange(draws) % count if prior is None else random.choice(count, size=draws, p=self.prior)
         self.senses = list(dict.fromkeys(p.sense for p in percepts))
-        self.log_p = log_likelihoods(percepts, self.values, random.integers(variants, size=draws), lapse, random, presented)
+        self.log_p = log_likelihoods(percepts, self.values, random.integers(variants, size=draws), lapse, random)
         self.shape = (draws, count, variants)
         self.known = {}
 

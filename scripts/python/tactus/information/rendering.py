@@ -80,8 +80,9 @@ def picture_settings(size):
 
 def perceived(folder, windows, size):
     """(features, pictures) of a rendering: {(sense, name, window): (values, standard deviations, confused share)}, and the bytes of its looks."""
-    felt, warm = touch.Touch(folder / "haptic.csv"), touch.Warmth(folder / "thermal.csv")
+    felt = touch.Touch(folder / "haptic.csv")
     offset = felt.offset_ns()
+    warm = touch.Warmth(folder / "thermal.csv", offset)
     clock = clock_of(read_rows(folder / "media_clock.csv"), "audio.wav")
     found = {}
     for i, (begin, end) in enumerate(windows):

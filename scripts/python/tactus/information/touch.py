@@ -10,6 +10,7 @@ from tactus.tables import read_rows
 
 CONTACT_S = 1.0  # of a touch whose heat flow is judged: the initial rate is the main cue (Bergmann Tiest and Kappers 2009)
 MIN_TRAVEL_M = 1e-3  # of the hand, for a stiffness; design
+MIN_RATE_S = 0.1     # of a change of temperature; design
 
 
 def columns(path, *names):
@@ -23,9 +24,12 @@ def columns(path, *names):
 class Touch:
     """haptic.csv of a run."""
 
-    def __init__(self, path):
+    def __init__(self, path, offset_ns=None):
+        """offset_ns: host time minus time of the world; None: a tick has the time of the world that it shows."""
         names = [f"{what}_{axis}_{unit}" for what, unit in (("device", "m"), ("force", "N"), ("transient", "N")) for axis in "xyz"]
         self.time, self.host, *rest = columns(path, "time_s", "host_s", *names)
+        if offset_ns is not None:
+            self.time = self.host - offset_ns * 1e-9
         self.place, self.force, self.transient = (np.stack(rest[i:i + 3], axis=1) for i in (0, 3, 6))
 
     def offset_ns(self):
@@ -76,19 +80,22 @@ def vibration_log(transient_N, floor_N, step_s):
 
 
 class Warmth:
-    """thermal.csv of a run."""
+    """thermal.csv of a run: the temperature that the display is commanded, at the time at which it is sent."""
 
-    def __init__(self, path):
-        self.time, self.material, self.flux, self.skin = columns(path, "time_s", "material", "heat_flux_W_m2", "skin_degC")
+    def __init__(self, path, offset_ns):
+        """offset_ns: host time minus time of the world."""
+        host, self.shown = columns(path, "host_s", "commanded_degC")
+        self.time = host - offset_ns * 1e-9
 
     def features(self, begin_s, end_s):
-        """As Touch.features: whether a change is felt, its sign, and the heat flow of the first second of the touch."""
+        """As Touch.features: whether a change is felt, its sign, and its rate in the first second, which is proportional to the heat flow into the skin."""
         n = noise.values()
         inside = (self.time >= begin_s) & (self.time < end_s)
-        time, touched, flux, skin = self.time[inside], self.material[inside] >= 0, self.flux[inside], self.skin[inside]
-        if not touched.any() or np.ptp(skin) < n["heat_floor"]:
+        time, shown = self.time[inside], self.shown[inside]
+        if not len(shown) or np.abs(shown - shown[0]).max() < n["heat_floor"]:
             return [("felt", [0.0], [0.01], 0.0), ("sign", [0.0], [0.01], 0.0), ("flow", [0.0], [1.0], 0.0)]
-        first = touched & (time < time[touched][0] + CONTACT_S)
-        mean = float(flux[first].mean())
-        return [("felt", [1.0], [0.01], 0.0), ("sign", [math.copysign(1.0, mean)], [0.01], 0.0),
-                ("flow", [math.log(max(abs(mean), 1e-3))], [noise.weber_sd(n["heat_flow"])], 0.0)]
+        onset = int(np.argmax(np.abs(shown - shown[0]) >= n["heat_floor"]))
+        first = np.flatnonzero(time < time[onset] + CONTACT_S)
+        rate = float(shown[first[-1]] - shown[0]) / max(float(time[first[-1]] - time[onset]), MIN_RATE_S)
+        return [("felt", [1.0], [0.01], 0.0), ("sign", [math.copysign(1.0, rate)], [0.01], 0.0),
+                ("flow", [math.log(max(abs(rate), 1e-6))], [noise.weber_sd(n["heat_flow"])], 0.0)]
