@@ -42,6 +42,7 @@ OTHER = {
     "*/modality.csv": "limits of operators",
     "docs/constants.csv": "this register",
     "docs/how_far/players.csv": "verdicts of simulated players",
+    **{f"docs/how_far/battery/{name}.csv": "results of the battery" for name in ("limits", "curves", "pairs")},
     "examples/*/settings.csv": "settings of an example",
     "scripts/python/tactus/cluster/traffic.csv": "measured rates of messages",
     "visual_node/rooms/*.csv": "rooms",

@@ -76,6 +76,18 @@ class Answers(unittest.TestCase):
         found = success(Two(lambda condition, seed: 0.0, sd=0.5), self.delay, answers.NAIVE)
         self.assertGreater(found, stats.norm.cdf(1 / 0.5) - 0.03)
 
+    def test_a_late_first_sound_leaves_the_interval_between_two_sounds(self):
+        class Times(OneFeature):
+            def features(self, sense, condition, seed):
+                values, sds = super().features(sense, condition, seed)
+                late = np.full((2, 1, 1), 80.0 if condition.operator else 0.0)
+                return np.concatenate([values[:, :, :1], late, values[:, :, 1:]], axis=2), np.concatenate([sds, sds[:, :, 1:]], axis=2)
+
+            def columns(self, sense):
+                return np.array([0, 1, 1]), np.array(["heard", "times", "times"]), np.zeros(3)
+        stored = Times(lambda condition, seed: 0.0)
+        self.assertAlmostEqual(success(stored, conditions.UNDEGRADED, answers.NAIVE), success(stored, self.delay, answers.NAIVE), delta=1e-9)
+
     def test_silence_leaves_the_answer_to_the_other_senses(self):
         class Silent(OneFeature):
             def features(self, sense, condition, seed):

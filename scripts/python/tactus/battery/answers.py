@@ -15,6 +15,7 @@ from tactus.information import degraded, pictures
 NAIVE, ADAPTED = "naive", "adapted"
 EXPECTATIONS = (NAIVE, ADAPTED)
 OUTLIERS = 0.01  # share of a feature that comes from anywhere; design: half the share of lapses
+SEPARATE = ("times",)  # the time of the first sound, and the interval between the two loudest
 BROAD = 10.0     # standard deviation of an outlier, as a multiple of the spread of the feature over the renderings; design
 
 
@@ -43,12 +44,19 @@ def features(stored, sense, condition, seed):
     number, name, wrong = stored.columns(sense)
     values, sds = stored.features(sense, condition, seed)
     found, presence = [], None
-    for f in np.unique(number):
-        pick = number == f
+    for pick in picks(number, name):
         if name[pick][0] in perceivers.PRESENCE:
             presence = values[:, :, pick][:, :, 0] > 0.5
         found.append(Feature(sense, str(name[pick][0]), values[:, :, pick], sds[:, :, pick], None if name[pick][0] in perceivers.PRESENCE else presence, float(wrong[pick][0])))
     return found
+
+
+def picks(number, name):
+    """Masks of the components of each feature, in order; components that are percepts of their own are features of their own."""
+    for f in np.unique(number):
+        mine = np.flatnonzero(number == f)
+        for part in (mine[:, None] if name[mine[0]] in SEPARATE else [mine]):
+            yield np.isin(np.arange(len(number)), part)
 
 
 def log_normal(y, mean, sd):

@@ -13,7 +13,7 @@ COMMON = {
 OF_SENSE = {
     # A picture is looked at four times a second, and the scene with vision is at rest, so a jitter does not show.
     "visual": {"loss": (25, 50, 75, 90), "rate": (12.5, 6.25, 3, 1.5), "resolution": (0.5, 0.25, 0.12, 0.06, 0.03)},
-    "audio": {},
+    "audio": {"delay": (*COMMON["delay"], 1280, 2560)},
     "haptic": {"rate": (200, 100, 50, *COMMON["rate"]), "deadband": (5, 10, 20, 40, 80), "quantise": (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)},
     "thermal": {"response": (100, 200, 400, 800, 1600, 3200, 6400)},
 }

@@ -3,16 +3,12 @@ from tactus import palette
 from tactus.battery import answers, conditions, limits
 
 MARK = {answers.NAIVE: ("o", palette.LIMIT["break"]), answers.ADAPTED: ("s", palette.BLUE), "detected": ("|", palette.BLACK)}
-OUTSIDE = 1.6  # factor beyond the outermost level at which limits outside the levels are drawn
+END = {limits.BELOW: "<", limits.ABOVE: ">"}  # marks of limits outside the levels, which are drawn at the outermost level
 
 
 def place(limit, levels):
-    """The coordinate of a limit, with those outside the levels beyond their ends."""
-    if limit == limits.BELOW:
-        return levels[0] / OUTSIDE if levels[-1] > levels[0] else levels[0] * OUTSIDE
-    if limit == limits.ABOVE:
-        return levels[-1] * OUTSIDE if levels[-1] > levels[0] else levels[-1] / OUTSIDE
-    return limit
+    """The coordinate of a limit: of one outside the levels, that of the outermost level."""
+    return {limits.BELOW: levels[0], limits.ABOVE: levels[-1]}.get(limit, limit)
 
 
 def draw(found, operator, path):
@@ -27,15 +23,18 @@ def draw(found, operator, path):
         for offset, (name, each) in zip((0.2, 0, -0.2), ((answers.NAIVE, curve.limits(answers.NAIVE)), (answers.ADAPTED, curve.limits(answers.ADAPTED)), ("detected", curve.thresholds()))):
             if each is None:
                 continue
-            q10, median, q90 = (place(limits.at_quantile(each, curve.levels, share), curve.levels) for share in (0.1, 0.5, 0.9))
+            q10, median, q90 = (limits.at_quantile(each, curve.levels, share) for share in (0.1, 0.5, 0.9))
             mark, colour = MARK[name]
-            axes.plot((q10, q90), (row + offset, row + offset), color=colour, linewidth=1.4)
-            axes.plot(median, row + offset, mark, color=colour, markersize=5 if mark != "|" else 9, label=name if row == 0 else None)
+            axes.plot([place(limit, curve.levels) for limit in (q10, q90)], (row + offset, row + offset), color=colour, linewidth=1.4)
+            axes.plot(place(median, curve.levels), row + offset, END.get(median, mark), color=colour, markersize=9 if mark == "|" and median not in END else 5, markerfacecolor="white" if median in END else colour)
+    for name, (mark, colour) in MARK.items():
+        axes.plot([], [], mark, color=colour, markersize=9 if mark == "|" else 5, label=name)
+    axes.plot([], [], END[limits.ABOVE], color=palette.GREY, markerfacecolor="white", markersize=5, label="not reached")
+    axes.plot([], [], END[limits.BELOW], color=palette.GREY, markerfacecolor="white", markersize=5, label="below the levels")
     levels = max((curve.levels for curve in mine), key=len)
     axes.set_xscale("log")
-    axes.set_xticks([place(limits.BELOW, levels), *levels, place(limits.ABOVE, levels)])
-    ordered = [f"below {levels[0]:g}", *(f"{level:g}" for level in levels), "not reached"] if levels[-1] > levels[0] else [f"above {levels[0]:g}", *(f"{level:g}" for level in levels), "not reached"]
-    axes.set_xticklabels(ordered, fontsize=7)
+    axes.set_xticks(levels)
+    axes.set_xticklabels([f"{level:g}" for level in levels])
     axes.minorticks_off()
     if levels[-1] < levels[0]:
         axes.invert_xaxis()

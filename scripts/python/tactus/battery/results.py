@@ -9,6 +9,7 @@ from tactus import terminal
 from tactus.battery import answers, conditions, deciding, limits, perceivers
 
 QUANTILES = (0.1, 0.5, 0.9)
+EXPLAINED = 0.5  # share of the variance of left-out players below which no property is named; design
 KEYS = ("median", "low", "high", "q10", "q90")
 
 
@@ -65,7 +66,7 @@ def show(found, properties):
     for curve in found:
         row = summary(curve, properties)
         cells = "".join(f" {cell(row, name)}" for name in answers.EXPECTATIONS)
-        by = f"{row['deciding property']} {row['total index']:.2f}" if row["deciding property"] else "-"
+        by = f"{row['deciding property']} {row['total index']:.2f}" if row["deciding property"] and row["explained of left out"] > EXPLAINED else "-"
         before = "" if row["limit before detection"] == "" else f"{100 * row['limit before detection']:.0f}%"
         terminal.show(f"{curve.task:30} {curve.sense:8} {curve.operator:10}{cells} {row['detected median'] or '-':>9} {before or '-':>6}  {by}")
 
