@@ -2,8 +2,8 @@
 import contextlib
 import csv
 import io
-import os
 import pathlib
+import shutil
 import sys
 import tempfile
 import unittest
@@ -26,20 +26,28 @@ def rows(path):
 
 
 class Command(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        for patched in (mock.patch.object(conditions, "COMMON", LEVELS), mock.patch.object(conditions, "OF_SENSE", {"audio": {}}), mock.patch.object(conditions, "SEEDS", (1, 2))):
+            cls.enterClassContext(patched)
         shipped = task_file.find("search_by_sound").read_text(encoding="utf-8")
-        values = shipped.split("<value ")[1:3]
-        values = "".join("<value " + value[:value.index("</value>") + len("</value>")] for value in values)
-        self.task = self.folder / "mine.task.xml"
-        self.task.write_text(TASK.format(values), encoding="utf-8")
-        for patched in (mock.patch.object(conditions, "COMMON", LEVELS), mock.patch.object(conditions, "SEEDS", (1, 2))):
-            patched.start()
-            self.addCleanup(patched.stop)
+        values = "".join("<value " + value[:value.index("</value>") + len("</value>")] for value in shipped.split("<value ")[1:3])
+        cls.task = cls.folder / "mine.task.xml"
+        cls.task.write_text(TASK.format(values), encoding="utf-8")
+        cls.status, cls.out, cls.errors = cls.run_command(*cls.words(cls.task, cls.folder / "first"), "--out", cls.folder / "out")
 
-    def run_command(self, *words):
+    @staticmethod
+    def words(task, kept):
+        return [task, "--players", 20, "--draws", 60, "--keep", kept]
+
+    def copied(self):
+        """A copy of the renderings of the first command."""
+        self.assertEqual(0, self.status, self.errors)
+        return shutil.copytree(self.folder / "first", self.folder / self.id())
+
+    @staticmethod
+    def run_command(*words):
         """(exit status, standard output, standard error) of the command."""
         out, errors = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
@@ -49,11 +57,10 @@ class Command(unittest.TestCase):
                 status, _ = 1, errors.write(str(stopped.code))
         return status, out.getvalue(), errors.getvalue()
 
-    def test_limits_are_printed_and_stored_and_a_second_command_renders_nothing(self):
-        words = [self.task, "--players", 20, "--draws", 60, "--keep", self.folder / "kept", "--out", self.folder / "out"]
-        status, out, errors = self.run_command(*words)
-        self.assertEqual(0, status, errors)
-        self.assertIn("2 of 2 scenes are rendered", errors)
+    def test_limits_are_printed_and_stored(self):
+        self.assertEqual(0, self.status, self.errors)
+        self.assertIn("2 of 2 scenes are rendered", self.errors)
+        self.assertIn("mine ", self.out)
         table = {row["operator"]: row for row in rows(self.folder / "out" / "limits.csv")}
         self.assertEqual(set(LEVELS), set(table))
         for row in table.values():
@@ -62,20 +69,28 @@ class Command(unittest.TestCase):
         self.assertEqual(20 * len(LEVELS), len(rows(self.folder / "out" / "players.csv")))
         deaf = [row for row in rows(self.folder / "out" / "curves.csv") if row["level"] == "900"]
         self.assertLess(float(deaf[0]["naive mean"]), 0.65)
-        self.assertIn("mine ", out)
-        before = {path: path.stat().st_mtime_ns for path in (self.folder / "kept").iterdir()}
-        with mock.patch.object(renderings.rendering, "simulate", side_effect=AssertionError("rendered again")):
-            again = self.run_command(*words)
-        self.assertEqual((0, out), again[:2])
-        self.assertEqual(before, {path: path.stat().st_mtime_ns for path in (self.folder / "kept").iterdir()})
+        self.assertTrue((self.folder / "out" / "delay.svg").read_text(encoding="utf-8").startswith("<?xml"))
 
-    def test_a_damaged_or_older_rendering_is_made_again(self):
-        words = [self.task, "--players", 20, "--draws", 60, "--keep", self.folder / "kept"]
-        out = self.run_command(*words)[1]
-        first, second = sorted((self.folder / "kept").iterdir())
-        first.write_bytes(first.read_bytes()[:100])
-        os.remove(second)
-        self.assertEqual((0, out), self.run_command(*words)[:2])
+    def test_a_second_command_renders_nothing(self):
+        with mock.patch.object(renderings.rendering, "simulate", side_effect=AssertionError("rendered again")):
+            self.assertEqual((0, self.out), self.run_command(*self.words(self.task, self.copied()))[:2])
+
+    def test_a_damaged_rendering_is_made_again(self):
+        kept = self.copied()
+        damaged = sorted(kept.iterdir())[0]
+        damaged.write_bytes(damaged.read_bytes()[:100])
+        self.assertEqual((0, self.out), self.run_command(*self.words(self.task, kept))[:2])
+
+    def test_the_renderings_of_a_task_that_has_changed_are_not_used(self):
+        kept = self.copied()
+        content = lambda: {path.read_bytes() for path in kept.iterdir()}
+        before, text = content(), self.task.read_text(encoding="utf-8")
+        changed = self.folder / "changed" / "mine.task.xml"
+        changed.parent.mkdir()
+        changed.write_text(text.replace("0.4000", "0.3000"), encoding="utf-8")
+        self.assertNotEqual(text, changed.read_text(encoding="utf-8"))
+        self.assertEqual(0, self.run_command(*self.words(changed, kept))[0])
+        self.assertEqual(1, len(before - content()))
 
     def test_wrong_options_are_refused_with_one_sentence(self):
         for words, reason in ((["--players", "5"], "--players 5: is out of range"), (["--draws", "1"], "--draws 1: is out of range"), (["nothing"], "nothing"),

@@ -31,7 +31,7 @@ def parsed(words):
     p.add_argument("--draws", type=int, default=1200, metavar="N", help="answers of a player at a level; default: 1200")
     p.add_argument("--seed", type=int, default=1, metavar="N", help="seed of the draws; default: 1")
     p.add_argument("--jobs", type=int, metavar="J", help="processes; default: one for each core")
-    p.add_argument("--keep", metavar="DIR", help="keep the renderings in DIR; a stopped command continues, and a second one begins with them")
+    p.add_argument("--keep", metavar="DIR", help="keep the renderings in DIR for further commands; remove DIR after a change of programs or of files that a scene names")
     p.add_argument("--out", metavar="DIR", help="write limits.csv, players.csv, curves.csv, pairs.csv and a figure of each operator into DIR")
     a = p.parse_args(words)
     for name, value, least, most in (("--players", a.players, FEWEST_PLAYERS, players.MOST), ("--draws", a.draws, 30, 1_000_000), ("--seed", a.seed, 0, 2**53), ("--jobs", a.jobs, 1, 1024)):

@@ -5,6 +5,7 @@ One file TASK_NUMBER.npz holds the features of one value and variant of a task: 
 players have the same renderings; their noise is added later (perceivers.py).
 """
 import concurrent.futures
+import hashlib
 import os
 import pathlib
 import tempfile
@@ -44,13 +45,14 @@ def packed(sense, found):
 def render(task, number, changes, folder):
     """Writes the file of one value and variant, unless it is there. Raises Refusal."""
     path = pathlib.Path(folder) / f"{task.name}_{number}.npz"
-    arrays = {name: array for name, array in stored(path).items() if name != "version"}
+    scene = task_file.changed_scene(task.scene, changes)
+    arrays = stored(path, origin(task, scene))
     left = [one for one in wanted(task) if key(*one) not in arrays]
     if not left:
         return
     with tempfile.TemporaryDirectory() as scratch:
         place = pathlib.Path(scratch) / "run"
-        rendering.simulate(task_file.changed_scene(task.scene, changes), task.scene.parent, place, task.seconds)
+        rendering.simulate(scene, task.scene.parent, place, task.seconds)
         log = place / "run.lcmlog"
         offset_ns = degraded.host_offset_ns(log, scratch)
         for sense, condition, seed in left:
@@ -59,15 +61,20 @@ def render(task, number, changes, folder):
                 arrays[name and sense + name or key(sense, condition, seed)] = array
     part = path.with_suffix(".part")
     with open(part, "wb") as file:
-        np.savez_compressed(file, **arrays, version=VERSION)
+        np.savez_compressed(file, **{**arrays, "origin": origin(task, scene)})
     os.replace(part, path)
 
 
-def stored(path):
-    """The arrays of a file by name; none when it is missing, damaged or of another version."""
+def origin(task, scene):
+    """Identity of the renderings of a scene: the XML of the scene, the times of the task, and the version of the features. Files that the scene names, and the programs, are not in it."""
+    return hashlib.sha256(repr((VERSION, scene, task.seconds, task.windows, task.senses)).encode()).hexdigest()
+
+
+def stored(path, of):
+    """The arrays of a file by name; none when it is missing, damaged or of another origin."""
     try:
         with np.load(path) as file:
-            return {name: file[name] for name in file.files} if "version" in file.files and int(file["version"]) == VERSION else {}
+            return {name: file[name] for name in file.files} if "origin" in file.files and str(file["origin"]) == of else {}
     except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error):
         return {}
 
@@ -96,9 +103,9 @@ class Stored:
         self.task = task
         self.shape = (len(task.values), len(task.variants))
         self.files = []
-        for number in range(self.shape[0] * self.shape[1]):
+        for number, (_, _, changes) in enumerate(percepts.renderings(task)):
             path = pathlib.Path(folder) / f"{task.name}_{number}.npz"
-            self.files.append(stored(path))
+            self.files.append(stored(path, origin(task, task_file.changed_scene(task.scene, changes))))
             if not {key(*one) for one in wanted(task)} <= set(self.files[-1]):
                 raise Refusal(f"{path}: does not hold all renderings of this version; remove it, and repeat the command")
 
