@@ -1,5 +1,6 @@
 """Simulated players of games: their names, and the checks of the players of a population (scripts/simulated_player)."""
 import concurrent.futures
+import csv
 import dataclasses
 import os
 import subprocess
@@ -14,6 +15,8 @@ LARGEST_PRACTICE = 100_000  # as --practice of simulated_player
 MOST = 2048                 # players of one study; design: a population of which a tenth passes the checks
 CHECKS = ("require", "leave_out", "count")
 CHECK_TIMEOUT_S = 600       # of one player; design: sixty times the 10 s that its checks take
+MOST_DRAWN = 1_000_000    # as --count of observer_players
+PROPERTIES_TIMEOUT_S = 60
 NAMED = 20                  # players of one line, design
 REPORTED = 20               # players between two lines of progress, design
 PROGRAM = BIN / "observer_players"
@@ -156,3 +159,19 @@ def described(players):
     if len(players) <= 4:
         return "; ".join(player.words() for player in players)
     return f"{len(players)} players, {players[0].words()} to {players[-1].words()}"
+
+
+def properties(population, numbers):
+    """{name [unit]: list of the values} of these players of a population. Raises Refusal."""
+    if max(numbers) >= MOST_DRAWN:
+        raise Refusal(f"player {max(numbers)}: its properties cannot be printed; give games of players below {MOST_DRAWN}")
+    words = [str(PROGRAM), "players", "--count", str(max(numbers) + 1), "--seed", str(population)]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=PROPERTIES_TIMEOUT_S, check=True)
+    except (OSError, subprocess.SubprocessError):
+        raise Refusal(f"{PROGRAM}: does not print the players; run scripts/build") from None
+    try:
+        rows = list(csv.DictReader(done.stdout.splitlines(), strict=True))
+        return {name: [float(rows[number][name]) for number in numbers] for name in rows[0] if name != "player"}
+    except (csv.Error, IndexError, TypeError, ValueError):
+        raise Refusal(f"{PROGRAM}: prints no table of players; run scripts/build") from None

@@ -7,6 +7,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "python"))
+from tactus import players
 from tactus.analysis import sensitivity
 from tactus.refusal import Refusal
 
@@ -45,10 +46,10 @@ class Sensitivity(unittest.TestCase):
         self.assertTrue(178 <= held <= 200, held)  # 190 expected, standard deviation 3.1
 
     def test_the_properties_of_players_are_read_by_name_with_commas_in_them(self):
-        found = sensitivity.properties(1, [0, 5])
+        found = players.properties(1, [0, 5])
         self.assertIn("motor noise, share [1]", found)
         self.assertEqual({len(values) for values in found.values()}, {2})
-        self.assertTrue(all(0 <= v <= 1 for v in found["search spread [1]"] / 4), found["search spread [1]"])  # the last column: none is shifted
+        self.assertTrue(all(0 <= v <= 4 for v in found["search spread [1]"]), found["search spread [1]"])  # the last column: none is shifted
 
     def test_shares_are_of_each_degraded_sense_and_of_players_that_played_all(self):
         rows = [game(n, m, success) for n in range(25) for m in ("visual", "haptic:percept") for success in (0, n % 2)]

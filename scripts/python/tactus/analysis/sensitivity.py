@@ -7,8 +7,6 @@ groups together (Benjamini and Hochberg 1995); rows are shown for a small p only
 drawn again.
 """
 import argparse
-import csv
-import subprocess
 import sys
 
 import numpy as np
@@ -22,27 +20,9 @@ from tactus.refusal import Refusal
 from tactus.sweep import adopted
 
 RESAMPLES = 1999
-LARGEST_NUMBER = 1_000_000  # as --count of observer_players
 UNDEGRADED = "undegraded"
 FEWEST = 20    # players; design: below, a rank correlation of 0.44 is chance
 SHOWN_P = 0.05
-TIMEOUT_S = 60
-
-
-def properties(population, numbers):
-    """({name: (players,) values}) of these players of a population. Raises Refusal."""
-    if max(numbers) >= LARGEST_NUMBER:
-        raise Refusal(f"player {max(numbers)}: its properties cannot be printed; give games of players below {LARGEST_NUMBER}")
-    words = [str(players.PROGRAM), "players", "--count", str(max(numbers) + 1), "--seed", str(population)]
-    try:
-        done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=TIMEOUT_S, check=True)
-    except (OSError, subprocess.SubprocessError):
-        raise Refusal(f"{players.PROGRAM}: does not print the players; run scripts/build") from None
-    try:
-        rows = list(csv.DictReader(done.stdout.splitlines(), strict=True))
-        return {name: np.array([float(rows[number][name]) for number in numbers]) for name in rows[0] if name != "player"}
-    except (csv.Error, IndexError, TypeError, ValueError):
-        raise Refusal(f"{players.PROGRAM}: prints no table of players; run scripts/build") from None
 
 
 def group_of(row):
@@ -123,7 +103,8 @@ def main(words):
     options = parser.parse_args(words)
     try:
         population, numbers, outcomes = shares(adopted.read(options.games).values())
-        show(table(properties(population, numbers), outcomes), len(numbers))
+        properties = {name: np.array(values) for name, values in players.properties(population, numbers).items()}
+        show(table(properties, outcomes), len(numbers))
     except Refusal as refused:
         sys.exit(f"sensitivity: {refused}")
     return 0

@@ -9,7 +9,6 @@ import sys
 import tempfile
 
 from tactus import players, signals, terminal
-from tactus.analysis import sensitivity
 from tactus.battery import answers, conditions, curves, figure, perceivers, renderings, results
 from tactus.information import rendering, task_file
 from tactus.option_parser import OptionParser
@@ -88,7 +87,7 @@ def play(tasks, folder, people, a):
 def run(a):
     rendering.require_programs()
     numbers = asked(a.players, a.verdicts)
-    properties = {name.rpartition(" [")[0]: values for name, values in sensitivity.properties(1, numbers).items()}
+    properties = {name.rpartition(" [")[0]: values for name, values in players.properties(1, numbers).items()}
     people = [perceivers.of_properties({name: float(values[i]) for name, values in properties.items()}) for i in range(len(numbers))]
     tasks = [(name, task_file.read(name)) for name in a.tasks or task_file.shipped()]
     with tempfile.TemporaryDirectory() as scratch:
