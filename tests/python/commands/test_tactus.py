@@ -86,7 +86,7 @@ class Refusals(unittest.TestCase):
                 (("export", "none.lcmlog"), "export: cannot read none.lcmlog; give the run.lcmlog of a run, or its folder"),
                 (("export", "--fast"), "export: there is no option --fast; see tactus export --help"),
                 (("live", "close"), "live: there is no verb 'close'; choose from open, follow"),
-                (("study", "find"), "study: there is no verb 'find'; choose from check, run, sweep, analyse, replicate, information")):
+                (("study", "find"), "study: there is no verb 'find'; choose from check, run, sweep, analyse, replicate, information, battery")):
             with self.subTest(words):
                 done = tactus(*words, env={**os.environ, "TACTUS_BIN": "/nowhere"})
                 self.assertEqual((1, "", sentence + "\n"), (done.returncode, done.stdout, done.stderr))
