@@ -15,7 +15,7 @@ LARGEST_PRACTICE = 100_000  # as --practice of simulated_player
 MOST = 2048                 # players of one study; design: a population of which a tenth passes the checks
 CHECKS = ("require", "leave_out", "count")
 CHECK_TIMEOUT_S = 600       # of one player; design: sixty times the 10 s that its checks take
-MOST_DRAWN = 1_000_000    # as --count of observer_players
+MAX_DRAWN = 1_000_000     # as --count of observer_players
 PROPERTIES_TIMEOUT_S = 60
 NAMED = 20                  # players of one line, design
 REPORTED = 20               # players between two lines of progress, design
@@ -163,8 +163,8 @@ def described(players):
 
 def properties(population, numbers):
     """{name [unit]: list of the values} of these players of a population. Raises Refusal."""
-    if max(numbers) >= MOST_DRAWN:
-        raise Refusal(f"player {max(numbers)}: its properties cannot be printed; give games of players below {MOST_DRAWN}")
+    if max(numbers) >= MAX_DRAWN:
+        raise Refusal(f"player {max(numbers)}: its properties cannot be printed; give games of players below {MAX_DRAWN}")
     words = [str(PROGRAM), "players", "--count", str(max(numbers) + 1), "--seed", str(population)]
     try:
         done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=PROPERTIES_TIMEOUT_S, check=True)
