@@ -43,14 +43,14 @@ TEST_CASE("DEGRADE-1: with audio_node stopped the others keep their rates") {
 TEST_CASE("DEGRADE-2: visual_node, frozen for 2 s, disturbs no other node and then shows the present state") {
   RunningCluster c;
   c.start();
-  const std::int64_t stale_at_start = c.monitor.health("visual_node")->stale_ticks;
+  const std::int64_t stale_at_start = c.monitor.newest_health("visual_node").stale_ticks;
   const auto before = c.rates(2);
   // Heavy load alone makes some inputs stale: if their number is the same as before the freeze, the freeze has no
   // effect.
-  const std::int64_t stale = c.monitor.health("visual_node")->stale_ticks;
+  const std::int64_t stale = c.monitor.newest_health("visual_node").stale_ticks;
   const std::int64_t usual = stale - stale_at_start;
   const std::int64_t frames = c.monitor.ticks("visual_node");
-  const std::int64_t missed = c.monitor.health("visual_node")->missed_ticks;
+  const std::int64_t missed = c.monitor.newest_health("visual_node").missed_ticks;
   c.processes.signal("visual_node", SIGSTOP);
   c.check_rates_hold(before, 2, "visual_node");
   CHECK(c.monitor.wait_until([&] { return c.monitor.health("visual_node") == nullptr; }, kTimeout_s));
@@ -74,7 +74,7 @@ TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all nodes report it an
   c.start();
   REQUIRE(c.monitor.wait_until([&] { return c.monitor.force_N() > 0; }, kTimeout_s));
   REQUIRE(c.monitor.wait_until([&] { return !c.monitor.contact_ids().empty(); }, kTimeout_s));
-  const std::int64_t first = c.monitor.health("sim_node")->header.incarnation;
+  const std::int64_t first = c.monitor.newest_health("sim_node").header.incarnation;
   c.processes.kill("sim_node");
 
   CHECK(c.monitor.wait_until([&] { return c.monitor.force_N() == 0 && c.monitor.tool_state()->fade == 0; }, 5));
@@ -93,7 +93,7 @@ TEST_CASE("DEGRADE-3: when sim_node dies the force fades, all nodes report it an
 
   c.processes.start("sim_node", {tapping_scene()});
   REQUIRE(c.monitor.wait_until([&] { return c.monitor.rejoined("sim_node") == 1 && c.is_running("sim_node"); }, kTimeout_s));
-  const std::int64_t second = c.monitor.health("sim_node")->header.incarnation;
+  const std::int64_t second = c.monitor.newest_health("sim_node").header.incarnation;
   REQUIRE(second != first);
   CHECK(c.monitor.wait_until([&] { return c.all_running(kNodes); }, kTimeout_s));
   CHECK(c.monitor.wait_until([&] { return c.monitor.force_N() > 0; }, kTimeout_s));

@@ -43,8 +43,8 @@ TEST_CASE(
   const bool joined = c.monitor.wait_until([&] { return c.is_running("wind_node"); }, kTimeout_s);
   INFO(c.processes.output("wind_node"));
   REQUIRE(joined);
-  CHECK(c.monitor.health("wind_node")->modality == "wind");
-  CHECK(c.monitor.health("wind_node")->expected_events == node_health_t::EXPECTS_HIT);
+  CHECK(c.monitor.newest_health("wind_node").modality == "wind");
+  CHECK(c.monitor.newest_health("wind_node").expected_events == node_health_t::EXPECTS_HIT);
 
   modality_report_t latest{};
   std::set<std::string> paired_with;
@@ -102,7 +102,7 @@ TEST_CASE("A profile delays the sixth modality by its 50 ms, and no other modali
   const PresentedEvents until = presented_events(c.monitor);
   REQUIRE(wait_for_presentations(c, all, until, kEvents));
   REQUIRE(c.monitor.health("wind_node"));
-  CHECK(c.monitor.health("wind_node")->profile != 0);
+  CHECK(c.monitor.newest_health("wind_node").profile != 0);
   for (const std::string& m : all) {
     const double now = median(delays_ms(c.monitor, m, until));
     INFO(m << " waited " << before[m] << " ms before and " << now << " ms now");

@@ -42,7 +42,7 @@ TEST_CASE(
   TwoMachines m;
   if (!m.start()) return;
   const auto before = m.running->rates(2);
-  const std::int64_t frames = m.monitor().ticks("visual_node"), missed = m.monitor().health("visual_node")->missed_ticks;
+  const std::int64_t frames = m.monitor().ticks("visual_node"), missed = m.monitor().newest_health("visual_node").missed_ticks;
   m.running->processes.signal("visual_node", SIGSTOP);
   m.running->check_rates_hold(before, 2, "visual_node");
   CHECK(m.monitor().wait_until([&] { return m.monitor().health("visual_node") == nullptr; }, kTimeout_s));

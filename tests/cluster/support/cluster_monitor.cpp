@@ -3,6 +3,7 @@
 #include "tests/cluster/support/cluster_monitor.h"
 
 #include <cmath>
+#include <stdexcept>
 #include <tactus/contact_event_t.hpp>
 #include <tactus/contact_events_t.hpp>
 #include <tactus/contact_frame_t.hpp>
@@ -86,6 +87,12 @@ const node_health_t* ClusterMonitor::health(const std::string& node) const {
   const auto it = nodes_.find(node);
   if (it == nodes_.end() || sync::host_now() - it->second.arrival > kHealthTimeout) return nullptr;
   return &it->second.health;
+}
+
+const node_health_t& ClusterMonitor::newest_health(const std::string& node) const {
+  const auto it = nodes_.find(node);
+  if (it == nodes_.end()) throw std::runtime_error(node + " has sent no health");
+  return it->second.health;
 }
 
 bool ClusterMonitor::in_state(const std::string& node, std::int8_t state) const {

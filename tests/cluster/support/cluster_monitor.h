@@ -29,6 +29,8 @@ class ClusterMonitor {
 
   // The newest health of a node; null after 1.5 s without one.
   const node_health_t* health(const std::string& node) const;
+  // The newest health that was ever received of a node, for its counters. Throws std::runtime_error when none was received.
+  const node_health_t& newest_health(const std::string& node) const;
   bool in_state(const std::string& node, std::int8_t state) const;
   // Ticks and presented events of a node in its newest health message; 0: none was received.
   std::int64_t ticks(const std::string& node) const;
