@@ -94,7 +94,8 @@ class Command(unittest.TestCase):
 
     def test_wrong_options_are_refused_with_one_sentence(self):
         for words, reason in ((["--players", "5"], "--players 5: is out of range"), (["--draws", "1"], "--draws 1: is out of range"), (["nothing"], "nothing"),
-                              (["--verdicts", "/nowhere/table.csv"], "/nowhere/table.csv"), (["--levels", "3"], "--levels")):
+                              (["--verdicts", "/nowhere/table.csv"], "/nowhere/table.csv"),
+                              (["--keep", str(self.task)], "is not a folder"), (["--out", str(self.task)], "is not a folder"), (["--levels", "3"], "--levels")):
             status, _, errors = self.run_command(*words)
             self.assertEqual(1, status, words)
             self.assertIn(reason, errors)

@@ -21,10 +21,6 @@ class Curve:
     success: dict
     detected: object
 
-    @property
-    def is_drawn(self):
-        return self.operator in conditions.DRAWN
-
     def limits(self, expectation):
         """The level of each player at which MARGIN fewer answers are right than undegraded; None for a drawn operator and adapted players."""
         return None if expectation not in self.success else [limits.crossing(self.levels, before - of_player, MARGIN) for before, of_player in zip(self.undegraded, self.success[expectation])]

@@ -36,6 +36,9 @@ def parsed(words):
     for name, value, least, most in (("--players", a.players, FEWEST_PLAYERS, players.MOST), ("--draws", a.draws, 30, 1_000_000), ("--seed", a.seed, 0, 2**53), ("--jobs", a.jobs, 1, 1024)):
         if value is not None and not least <= value <= most:
             raise Refusal(f"{name} {value}: is out of range; give {least} to {most}")
+    for option, folder in (("--keep", a.keep), ("--out", a.out)):  # before half an hour of renderings
+        if folder and os.path.exists(folder) and not (os.path.isdir(folder) and os.access(folder, os.W_OK)):
+            raise Refusal(f"{option} {folder}: is not a folder that you can write to; give another one")
     a.jobs = a.jobs or len(os.sched_getaffinity(0))
     return a
 
