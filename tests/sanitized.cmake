@@ -21,7 +21,7 @@ target_link_libraries(lcmtypes_sanitized_test PRIVATE tactus_catch2 PNG::PNG tac
 set(sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
 target_compile_options(lcmtypes_sanitized_test PRIVATE ${sanitizers} -fno-omit-frame-pointer -O0 -g1 -Wno-maybe-uninitialized -Wno-restrict)
 target_link_options(lcmtypes_sanitized_test PRIVATE ${sanitizers} -fuse-ld=bfd)
-tactus_unity(lcmtypes_sanitized_test)
+tactus_unity(lcmtypes_sanitized_test JOINED)
 # One test for all cases, because the start of a program with sanitizers takes long. Libraries without sanitizers fill containers of the tests.
 add_test(NAME "lcmtypes: all tests pass with the address and undefined behaviour sanitizers" COMMAND lcmtypes_sanitized_test)
 set_tests_properties("lcmtypes: all tests pass with the address and undefined behaviour sanitizers" PROPERTIES LABELS simulation COST 100 TIMEOUT 600

@@ -118,17 +118,17 @@ TEST_CASE("A tool that changes direction is detected in the same tick, and the g
 }
 
 TEST_CASE("Every body that the hand touches is in the group, for any motion of the hand") {
-  test::AdversaryResult all_sound, all_kim;
+  tactus::sim::test::AdversaryResult all_sound, all_kim;
   for (const double acceleration : {0.0, 9.8, 30.0, 100.0, 300.0})
     for (unsigned seed = 1; seed <= 4; ++seed) {
-      test::AdversaryDef def;
+      tactus::sim::test::AdversaryDef def;
       def.tool_acceleration_m_s2 = acceleration;
       def.seed = seed;
       def.room_m = seed % 2 == 0 ? 0.5 : 0.6;
       def.tool_speed_m_s = seed > 2 ? 5 : 1;
       INFO("acceleration " << acceleration << " m/s^2, seed " << seed);
-      const test::AdversaryResult sound = test::Adversary(def, GroupingRule::kSound, {}).run();
-      const test::AdversaryResult kim = test::Adversary(def, GroupingRule::kKim2005, {}).run();
+      const tactus::sim::test::AdversaryResult sound = tactus::sim::test::Adversary(def, GroupingRule::kSound, {}).run();
+      const tactus::sim::test::AdversaryResult kim = tactus::sim::test::Adversary(def, GroupingRule::kKim2005, {}).run();
       CHECK(sound.missed == 0);
       CHECK(sound.group < def.balls);
       all_sound.contacts += sound.contacts;

@@ -14,13 +14,14 @@
 #include "sim_node/publish/publisher.h"
 #include "sync/resampling/body_history.h"
 #include "sync/resampling/contact_stream.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sim;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+using tactus::test::kMs;
 
 std::int64_t step_begin(std::int64_t n) { return (1000 * n + 59) / 60; }
 

@@ -13,7 +13,7 @@
 
 using namespace tactus;
 using namespace tactus::sim;
-using test::png_bytes;
+using tactus::test::png_bytes;
 
 namespace {
 const std::string kGood = "bump='planks.png' bump_size='0.5m 20cm' bump_height='1mm'";

@@ -8,13 +8,15 @@
 
 #include "lcmtypes/valid.h"
 #include "sync/clock_sync/clock_map_estimator.h"
+#include "tests/times.h"
 
 using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kAhead = 900'000 * kMs;
+using tactus::test::kMs;
+constexpr std::int64_t kAhead = 900'000 * kMs;
 
 Identity host(std::int32_t clock, std::int64_t run = 7) {
   Identity id;

@@ -2,12 +2,15 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace tactus::sync;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kBegin_ns = 50'000'000'000;
+using tactus::test::kMs;
+constexpr std::int64_t kBegin_ns = 50'000'000'000;
 HostTime at(int ms) { return host_time(kBegin_ns + kMs * ms); }
 header_t numbered(std::int64_t seq, std::int64_t ms) {
   header_t h{};

@@ -6,6 +6,8 @@
 #include <tactus/contact_frame_t.hpp>
 #include <tactus/contact_t.hpp>
 
+#include "tests/times.h"
+
 using namespace tactus;
 using namespace std::chrono_literals;
 using thermal::Tick;
@@ -13,7 +15,7 @@ using thermal::Ticks;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+using tactus::test::kMs;
 
 // A simulation whose time advances with the host's, 1 s behind, and which publishes every millisecond.
 struct World {

@@ -14,9 +14,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using test::direction;
-using test::Random;
-using test::uniform;
+using tactus::sim::test::direction;
+using tactus::sim::test::Random;
+using tactus::sim::test::uniform;
 
 // One to three free bodies with one to three contacts between them and with the ground, in one island.
 struct SmallIsland {

@@ -20,7 +20,7 @@ using namespace tactus::sim;
 namespace {
 
 sync::Bytes picture(std::uint8_t red) {
-  return test::png_bytes(2, 1, 8, {red, 0, 0, 0, red, 0}, PNG_COLOR_TYPE_RGB);
+  return tactus::test::png_bytes(2, 1, 8, {red, 0, 0, 0, red, 0}, PNG_COLOR_TYPE_RGB);
 }
 std::int64_t hash(const sync::Bytes& bytes) { return sync::fnv1a_64(bytes.data(), bytes.size()); }
 

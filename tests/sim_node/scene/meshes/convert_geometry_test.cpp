@@ -67,7 +67,7 @@ MeshParts random_mesh(std::mt19937& random) {
     material.shininess = number(1, 1000);
     material.alpha = count(0, 1) ? 1 : number(0, 1);
     if (count(0, 1)) material.colour_map.file = "maps/a picture %41 \xc3\xa4 " + std::to_string(m) + ".png";
-    if (count(0, 1)) material.normal_map.bytes = test::png_bytes(2, 2, 8, {1, 2, 3, static_cast<std::uint8_t>(m)});
+    if (count(0, 1)) material.normal_map.bytes = tactus::test::png_bytes(2, 2, 8, {1, 2, 3, static_cast<std::uint8_t>(m)});
     mesh.materials.push_back(material);
   }
   for (int p = count(1, 4); p > 0; --p) {
@@ -147,7 +147,7 @@ TEST_CASE("Paths of pictures and properties are relative to the new file") {
 }
 
 TEST_CASE("A material of a scene takes height map, modes and look from the mesh file unless it defines them") {
-  const auto picture = test::png_bytes(2, 2, 8, {0, 10, 20, 30});
+  const auto picture = tactus::test::png_bytes(2, 2, 8, {0, 10, 20, 30});
   SceneFile file("", {{"planks.png", picture}});
   file.write("box.modes.csv", "frequency_Hz,damping_1_s,amplitude\n440,3,1\n");
   file.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");

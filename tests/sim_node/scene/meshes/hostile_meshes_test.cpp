@@ -340,7 +340,7 @@ TEST_CASE("A damaged geometry file is a mesh or one clause, and its reader stays
 }
 
 TEST_CASE("A picture that is cut off at any byte or damaged is accepted or one clause") {
-  const std::vector<std::uint8_t> whole = test::png_bytes(3, 2, 8, {0, 1, 2, 3, 4, 5});
+  const std::vector<std::uint8_t> whole = tactus::test::png_bytes(3, 2, 8, {0, 1, 2, 3, 4, 5});
   CHECK_NOTHROW(check_picture(whole, PictureUse::kColour));
   for (std::size_t size = 0; size < whole.size(); ++size)
     CHECK_THROWS_AS(check_picture(std::span(whole).first(size), PictureUse::kColour), std::runtime_error);
