@@ -85,26 +85,33 @@ class OverDispersedAnswers:
         tables = beta_binomial_tables(eta, pairs[:, 0], pairs[:, 1])
         # One row for each entry of a table, with the values of all nodes.
         self.tables = np.ascontiguousarray(np.moveaxis(tables, 0, -1)).reshape(-1, len(eta))
+        # The last row of a table has no next one; no share falls on it.
+        self.rises = np.diff(self.tables, axis=0, append=self.tables[-1:])
         self.first_row = (index.reshape(yes.shape) * len(LOGITS)).astype(np.int32)[:, None, None, :]
 
     def integrated(self, p):
-        """(m, i, j) for probabilities (m, i, j, k)."""
-        place = within((np.log(p / (1 - p)) - LOGITS[0]) / (LOGITS[1] - LOGITS[0]), 0, len(LOGITS) - 1.001)
+        """(m, i, j) for probabilities (m, i, j, k), which likelihood.LEAST_P keeps from 0 and 1."""
+        place = np.log(p / (1 - p))
+        place -= LOGITS[0]
+        place /= LOGITS[1] - LOGITS[0]
+        place = within(place, 0, len(LOGITS) - 1.001)
         if not math.isfinite(place.sum()):  # the sparse product does not check its indices
             raise ValueError("a probability of the posterior is not a number; the fit did not converge")
         low = place.astype(np.int32)
-        share = place - low
-        # Interpolation and the sum over the counts are one product with a sparse matrix: two entries for each count.
-        rows, shares = np.empty((*p.shape, 2), np.int32), np.empty((*p.shape, 2))
-        np.add(self.first_row, low, out=rows[..., 0])
-        np.add(rows[..., 0], 1, out=rows[..., 1])
-        np.subtract(1, share, out=shares[..., 0])
-        shares[..., 1] = share
-        cells, each = math.prod(p.shape[:-1]), 2 * p.shape[-1]
+        place -= low
+        low += self.first_row
+        # Interpolation and the sum over the counts are two products with sparse matrices that have an entry for each count.
+        cells, each = math.prod(p.shape[:-1]), p.shape[-1]
         starts = np.arange(0, cells * each + 1, each, dtype=np.int32)
-        values = self.log_weights + sparse.csr_matrix((shares.ravel(), rows.ravel(), starts), shape=(cells, len(self.tables)), copy=False) @ self.tables
+
+        def sum_of(tables, shares):
+            return sparse.csr_matrix((shares.ravel(), low.ravel(), starts), shape=(cells, len(tables)), copy=False) @ tables
+
+        values = sum_of(self.tables, np.ones(low.shape)) + sum_of(self.rises, place)
+        values += self.log_weights
         most = values.max(axis=1)
-        return (most + np.log(np.exp(values - most[:, None]).sum(axis=1))).reshape(p.shape[:-1])
+        values -= most[:, None]
+        return (most + np.log(np.exp(values, out=values).sum(axis=1))).reshape(p.shape[:-1])
 
 
 def integrated(fits, rows, anchor, q, t, nodes):
