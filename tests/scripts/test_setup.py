@@ -12,7 +12,7 @@ DPKG_QUERY = """#!/bin/sh
 for word; do format=$word; case $word in -f=*) break ;; esac; done
 case $format in
   *Status-Status}\\ *Package*) sed 's/^/installed /' "$STATE" ;;
-  *) shift 2; for name; do grep -qx "$name" "$STATE" && echo "$name installed"; done ;;
+  *) shift 2; printf '%s\\n' "$@" | grep -Fxf "$STATE" | sed 's/$/ installed/' ;;
 esac
 """
 DPKG = """#!/bin/sh

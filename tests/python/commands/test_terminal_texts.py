@@ -18,7 +18,7 @@ from tactus.analysis import main
 from tactus.report import figures
 
 # Modules that print values directly: numbers, names of this package, JSON, and control sequences for the progress on a terminal.
-DIRECT = {"terminal.py", "metrics/curves.py", "metrics/main.py", "metrics/rank.py", "metrics/tasks.py", "rerender/main.py", "rerun/main.py", "modal_analysis/main.py", "information/main.py", "battery/main.py",
+DIRECT = {"terminal.py", "metrics/curves.py", "metrics/main.py", "metrics/rank.py", "metrics/tasks.py", "rerender/main.py", "rerun/main.py", "modal_analysis/main.py", "information/main.py",
           "commands/dispatch.py", "commands/prepare.py", "commands/disturb.py", "commands/drumkit_sounds.py", "doctor/main.py", "log/marker.py", "cluster/main.py",
           "cluster/bus_listener.py", "cluster/intruder.py", "cluster/lab_cluster.py", "cluster/lab_command.py"}
 HOSTILE = ("\x1b]0;title\x07", "\x9b2J", "\x1b[31m", "\rover", "\x7f", "\x08")

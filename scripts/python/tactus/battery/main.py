@@ -5,14 +5,13 @@ import functools
 import os
 import pathlib
 import signal
-import sys
 import tempfile
 
-from tactus import players, signals, terminal
+from tactus import ending, players, signals, terminal
 from tactus.battery import answers, conditions, curves, figure, perceivers, renderings, results
 from tactus.information import rendering, task_file
 from tactus.option_parser import OptionParser
-from tactus.refusal import Refusal, sentence_of
+from tactus.refusal import Refusal
 from tactus.sweep import verdicts
 
 USAGE = """Renders each task under every operator and level of the senses that it is for, and asks a population of simulated players. For each operator, prints the level at which a player
@@ -111,13 +110,8 @@ def stop(number, frame):
 
 
 def main(words):
-    try:
+    def handled():
         a = parsed(words)
         signals.handle([signal.SIGTERM], stop)
         return run(a)
-    except KeyboardInterrupt:
-        print("study battery: interrupted", file=sys.stderr)
-        return 130
-    except (Refusal, OSError) as error:
-        terminal.report_refusal(f"study battery: {sentence_of(error) if isinstance(error, OSError) else error}")
-        return 1
+    return ending.status("study battery", handled)

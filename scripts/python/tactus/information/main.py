@@ -4,14 +4,13 @@ import math
 import os
 import pathlib
 import signal
-import sys
 import tempfile
 
-from tactus import signals, terminal
+from tactus import ending, signals, terminal
 from tactus.information import noise, percepts, rendering, task_file
 from tactus.information.estimate import Observer
 from tactus.option_parser import OptionParser
-from tactus.refusal import Refusal, sentence_of
+from tactus.refusal import Refusal
 
 USAGE = """Renders every value of the hidden variable of a task in virtual time without any degradation, adds the noise of human senses, and prints the mutual
 information of the percepts and the hidden variable, in bits, and the share of right answers of an ideal observer, with 95 % intervals: with all senses, with
@@ -106,13 +105,8 @@ def run(a):
 
 
 def main(words):
-    try:
+    def handled():
         a = parsed(words)
         signals.handle([signal.SIGTERM], stop)
         return run(a)
-    except KeyboardInterrupt:
-        print("study information: interrupted", file=sys.stderr)
-        return 130
-    except (Refusal, OSError) as error:
-        terminal.report_refusal(f"study information: {sentence_of(error) if isinstance(error, OSError) else error}")
-        return 1
+    return ending.status("study information", handled)

@@ -34,11 +34,10 @@ import os
 import sys
 import time
 
-from tactus import own_files, terminal
+from tactus import ending, own_files, terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import BIN, remedy
-from tactus.refusal import Refusal
 from tactus.rerender import changed, live, render
 
 REFERENCE = "reference"
@@ -226,13 +225,7 @@ def against_live(renderings, options):
 
 
 def main(words):
-    try:
-        return rerender(words)
-    except Refusal as refusal:
-        sys.exit(f"rerender: {refusal}")
-    except KeyboardInterrupt:
-        print("rerender: interrupted", file=sys.stderr)
-        return 130
+    return ending.status("rerender", lambda: rerender(words))
 
 
 def rerender(words):

@@ -1,5 +1,6 @@
 """Fits the impedance and the smoothness of the intention of a hand to a recorded motion, with uncertainty. Pure."""
 import dataclasses
+import math
 
 import numpy as np
 from scipy import optimize
@@ -63,12 +64,12 @@ class Problem:
         self.precision = np.array([*(sd**-2 for _, sd in priors.values()), *([DELAY_SD**-2] if free_delay else [])])
 
     def hand(self, theta):
-        values = {name: float(np.exp(np.clip(t, -40, 40))) for name, t in zip(self.names, theta)}
+        values = {name: math.exp(min(max(t, -40.0), 40.0)) for name, t in zip(self.names, theta)}
         values["noise_m"] += SHORTEST_NOISE_M
         for name, (least, most) in RANGES.items():
             values[name] = min(max(values[name], least), most)
         if "delay_s" in self.names:
-            values["delay_s"] = float(LONGEST_DELAY_S / (1 + np.exp(-np.clip(theta[-1], -40, 40))))
+            values["delay_s"] = LONGEST_DELAY_S / (1 + math.exp(-min(max(theta[-1], -40.0), 40.0)))
         return Hand(**values)
 
     def blocks(self, theta):

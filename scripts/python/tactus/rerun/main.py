@@ -30,17 +30,16 @@ import glob
 import itertools
 import json
 import os
-import sys
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small
 
 import numpy as np
 
-from tactus import own_files, tables, terminal
+from tactus import ending, own_files, tables, terminal
 from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import BIN, remedy
-from tactus.refusal import Refusal, sentence_of
+from tactus.refusal import Refusal
 from tactus.rerun import comparison, hand_model, identify, play, recording
 
 AS_LOGGED = "as_logged"
@@ -211,12 +210,4 @@ def rerun(words):
 
 
 def main(words):
-    try:
-        return rerun(words)
-    except Refusal as refusal:
-        sys.exit(f"rerun: {refusal}")
-    except OSError as error:
-        sys.exit(f"rerun: {sentence_of(error)}")
-    except KeyboardInterrupt:
-        print("rerun: interrupted", file=sys.stderr)
-        return 130
+    return ending.status("rerun", lambda: rerun(words))
