@@ -40,7 +40,7 @@ from tactus.log import description
 from tactus.option_parser import OptionParser
 from tactus.paths import BIN, remedy
 from tactus.refusal import Refusal
-from tactus.rerun import comparison, hand_model, identify, play, recording
+from tactus.rerun import comparison, play, recording
 
 AS_LOGGED = "as_logged"
 UNKNOWN = ("the hand touches nothing in this log, so its impedance is unknown: the hands are drawn from the population (hands that hold a stylus, and arms), "
@@ -117,6 +117,7 @@ def draw_hands(record, posterior, count, rng):
     """[(Hand, intention (n, 3))]: hands drawn from the fit, each with its own intention. Mass, damping and stiffness may vary; the motion stays that
     of the log under the recorded force."""
     chosen = [posterior.hands[i] for i in rng.choice(len(posterior.hands), count, replace=count > len(posterior.hands))]
+    from tactus.rerun import hand_model  # loads slowly
     return [(hand, hand_model.drawn_intention(hand, record.position_m, record.force_N, record.dt_s, rng)) for hand in chosen]
 
 
@@ -156,6 +157,7 @@ def write_table(path, times_s, bands):
 
 def hand_figures(posterior):
     """The fit as JSON: median and 95 % interval of each parameter."""
+    from tactus.rerun import identify
     intervals = {name: dict(zip(("median", "low", "high"), posterior.interval(name))) for name in (*identify.POPULATION, "delay_s", "noise_m", "jerk", "jumps")}
     return {"contact": posterior.contact, **intervals, "most_probable": dataclasses.asdict(posterior.best)}
 
@@ -176,6 +178,7 @@ def rerun(words):
     options = arguments(words)
     record = recording.read(options.log, options.tool, options.run_number)
     scene = recording.scene_of(options.log, record.scene, options.scene)
+    from tactus.rerun import identify  # loads slowly
     rng = np.random.default_rng(options.seed)
     try:
         posterior = identify.fit(record.position_m, record.force_N, record.dt_s, rng, record.external)

@@ -7,7 +7,6 @@ import subprocess
 import tempfile
 
 import numpy as np
-from scipy import interpolate
 
 from tactus import own_files, tables
 from tactus.log import description
@@ -79,6 +78,7 @@ def even_ticks(time_s, position_m, force_N):
         return time_s, position_m, force_N, float(np.mean(steps))
     even = np.arange(time_s[0], time_s[-1], dt_s)
     held = np.clip(np.searchsorted(time_s, even, side="right") - 1, 0, len(time_s) - 1)
+    from scipy import interpolate  # loads slowly
     return even, interpolate.CubicSpline(time_s, position_m)(even), force_N[held], dt_s
 
 

@@ -6,7 +6,7 @@ import random
 import re
 import zlib
 
-from tactus.psychophysics import fits, procedures
+from tactus.psychophysics import procedures
 from tactus.study import procedure_element, quantities, study_file
 
 FUNCTIONS = {"synchrony": ("synchrony_window", None), "order": ("order", None), "two_interval": ("cumulative_gaussian", {"guess": 0.5})}
@@ -124,6 +124,7 @@ class Plan:
         name, fixed = FUNCTIONS[self.study.response]
         if procedure.done < FEWEST_FOR_A_FIT:
             return None
+        from tactus.psychophysics import fits  # loads slowly
         fit = fits.fit(*procedures.counts(procedure.history), name, fixed)
         return {k: float(v) for k, v in list(fit.params.items())[:2]} if fit.converged else None
 
