@@ -25,7 +25,7 @@ FreeBody thrown_body() {
 World three() {
   World w;
   w.add_free(thrown_body());
-  test::add_system(w, articulated::ArticulatedSystem(tactus::sim::test::horizontal_chain(1)));
+  tactus::sim::test::add_system(w, articulated::ArticulatedSystem(tactus::sim::test::horizontal_chain(1)));
   w.add_free(thrown_body());
   return w;
 }

@@ -6,11 +6,7 @@
 #include "tests/times.h"
 
 using namespace tactus::sync;
-
-namespace {
-
 using tactus::test::kMillisecond;
-}
 
 TEST_CASE("Every published threshold has a pair, a time, a meaning, a situation and a source") {
   REQUIRE(published_thresholds().size() >= 10);
