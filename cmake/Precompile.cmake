@@ -1,6 +1,6 @@
 # Precompiles the headers that nearly every file includes, because parsing them takes a large part of a full build: once for libraries and
-# programs, and once more, with Catch2, for tests. Each file still includes the headers that it uses; the presets release and tsan,
-# which precompile nothing, check this. With precompiled headers GCC 12 reports false out-of-bounds string operations (GCC bug 105651), so
+# programs, and once more, with Catch2, for tests. Each file still includes the headers that it uses; the preset release,
+# which compiles each file by itself without them, checks this. With precompiled headers GCC 12 reports false out-of-bounds string operations (GCC bug 105651), so
 # these warnings are off here.
 option(TACTUS_PRECOMPILE "Read common headers once" ON)
 set(TACTUS_PRECOMPILED_HEADERS <Eigen/Geometry> <algorithm> <chrono> <functional> <map> <memory> <optional> <string> <vector>)

@@ -1,5 +1,5 @@
-# Compiles the files of one folder in groups of at most six, as one translation unit each (presets dev and asan). Headers and templates that a group
-# shares are then compiled once. The presets release and tsan compile each file by itself, which shows missing includes.
+# Compiles the files of one folder in groups of at most six, as one translation unit each (presets dev, asan, tsan and clang). Headers and templates that a group
+# shares are then compiled once. The preset release compiles each file by itself, which shows missing includes.
 option(TACTUS_UNITY "Compile the files of a folder in groups" OFF)
 set(TACTUS_UNITY_FILES 6 CACHE STRING "Files of a group")
 

@@ -239,7 +239,7 @@ int tactus::sim::run(int argc, char** argv, const WorldDef* loaded_world) try {
     scene_sender.poll(now);
     if (commander.take_restart()) {
       restart_pending = true;
-      restart_time = now + sync::from_seconds(settings.new_life_silence_s);
+      restart_time = now + sync::from_seconds(settings.restart_silence_s);
     }
     if (restart_pending && now < restart_time) continue;
     if (std::exchange(restart_pending, false)) {

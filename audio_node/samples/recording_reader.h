@@ -1,5 +1,5 @@
 // Reads the recordings of one folder in a confined process, the program read_sounds (sync/sandbox/README.md): libsndfile and
-// the libraries below it parse files of strangers.
+// the libraries below it parse untrusted files.
 #pragma once
 
 #include <optional>

@@ -21,7 +21,7 @@ class Limiter {
   Limiter(double ceiling, double rate_Hz, int channels = 2);
   // In place, channels interleaved: the output is the input of kDelay frames before. One gain for all channels.
   void process(float* samples, int frames);
-  // Forgets the input of the last kDelay frames.
+  // Clears the input of the last kDelay frames.
   void clear() { std::fill(delayed_.begin(), delayed_.end(), 0.f); }
 
  private:

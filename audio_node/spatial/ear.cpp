@@ -7,7 +7,7 @@ namespace tactus::audio {
 void Ear::set_scene(const scene_t& scene) {
   scene_ = scene;
   tool_ = head_of(scene);
-  head_.forget();
+  head_.clear();
   last_ = to_eigen(scene.listener);
 }
 

@@ -18,7 +18,7 @@ def help_of(words):
     done = subprocess.run([*words, "--help"], capture_output=True, text=True, check=False, timeout=120, stdin=subprocess.DEVNULL,
                           env={**os.environ, "COLUMNS": "120", "LC_ALL": "C.UTF-8", "TACTUS_BIN": "/nonexistent"})
     if done.returncode != 0:
-        raise PageError(f"{' '.join(map(str, words))} --help exits with {done.returncode}: {done.stderr.strip()[:200]}; mend its help")
+        raise PageError(f"{' '.join(map(str, words))} --help exits with {done.returncode}: {done.stderr.strip()[:200]}; correct its help")
     return done.stdout.rstrip()
 
 

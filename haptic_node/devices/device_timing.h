@@ -21,7 +21,7 @@ class DeviceTiming {
   // at_once: the driver applies a force on arrival instead of with its next state.
   explicit DeviceTiming(bool at_once) : at_once_(at_once) {}
 
-  // Forgets all measurements: another driver, or the same one after a silence.
+  // Clears all measurements: another driver, or the same one after a silence.
   void restart();
   // A new state. stamp_ns: its publish time on the clock of the driver; transit_s: from there to its arrival. Values
   // out of range are clamped. Realtime-safe: yes.

@@ -24,7 +24,7 @@ class ForceCrossfade {
   Eigen::Vector3d step(std::span<const Surface> surfaces, const Eigen::Vector3d& force_N, double dt);
   // Treats the next step as a change of the binding surfaces, because the rendering method has changed.
   void restart() { restart_pending_ = true; }
-  // Forgets the force: nothing is pressed.
+  // Resets the force to zero: nothing is pressed.
   void reset();
 
  private:

@@ -11,7 +11,7 @@ constexpr double kTicksPerPeriod = 3;
 }  // namespace
 
 SurfaceLimits surface_limits(const Settings& s) {
-  return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.extrapolate_at_most_s,
+  return {s.recovery_time_s, s.recovery_speed_m_s, s.recovery_turn_rad_s, s.max_extrapolation_s,
           s.surface_speed_limit_m_s};
 }
 

@@ -33,7 +33,7 @@ sync::SampleStatus Renderer::status(const TickInput& in) const {
   if (!in.map) return sync::SampleStatus::kHeld;
   const double age_s = sync::to_seconds(in.map->to_sim(in.now) - *model_time_);
   if (age_s == 0) return sync::SampleStatus::kExact;
-  return age_s <= settings_.extrapolate_at_most_s ? sync::SampleStatus::kExtrapolated : sync::SampleStatus::kHeld;
+  return age_s <= settings_.max_extrapolation_s ? sync::SampleStatus::kExtrapolated : sync::SampleStatus::kHeld;
 }
 
 void Renderer::fill_state(const TickInput& in, const Eigen::Vector3d& transient_N) {

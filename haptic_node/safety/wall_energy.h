@@ -57,7 +57,7 @@ class WallEnergy {
   explicit WallEnergy(const WallLimits& limits) : limits_(limits) {}
   void change(const WallLimits& limits) { limits_ = limits; }
 
-  // The device has dropped the force, and touch restarts: forgets the episode and the commands.
+  // The device has dropped the force, and touch restarts: clears the episode and the commands.
   void reset();
   // One tick, after the depths are solved. springs_J: energy of the coupling to walls at full stiffness; pressed:
   // whether any is pressed. motion: since the last call. held_s: time since then. appeared_J: the part

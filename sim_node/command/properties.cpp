@@ -27,7 +27,7 @@ constexpr std::array kProperties{
     PropertyRow{Owner::kJoint, "friction", "N m", 1, 0, 100, "dry friction; of a slider N"},
 };
 
-// design: five times the force limit of the hand, and the same force at the end of a rod of 10 cm
+// design: five times the default of tool_force_limit, and the same force at the end of a rod of 10 cm
 constexpr double kMaxForce_N = 100, kMaxTorque_N_m = 10;
 constexpr sync::Nanoseconds kMaxPush = std::chrono::seconds(10);
 

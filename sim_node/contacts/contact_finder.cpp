@@ -41,6 +41,7 @@ bool is_sound(const PointPair& p) {
 ContactFinder::ContactFinder(const WorldDef& world, const Settings& settings, std::shared_ptr<MeshTrees> trees)
     : near_(world, settings.contact_tolerance_m, *(trees = trees ? trees : std::make_shared<MeshTrees>())),
       friction_(world),
+      passing_(world, settings.contact_tolerance_m),
       number_(world.shapes.size(), -1),
       chosen_number_(world.shapes.size(), -1) {
   const MeshContactOptions options = layer_options(settings);
@@ -101,7 +102,13 @@ void ContactFinder::find(std::span<const BodyMotion> bodies, std::span<const int
                          std::vector<Manifold>& out) {
   const sync::ScopedPhaseTimer phase(sync::Phase::kCollision);
   out.clear();
-  for (const NearPair& pair : near_.find(bodies, active, h_s)) detect_pair(pair, out);
+  for (const NearPair& pair : near_.find(bodies, active, h_s)) {
+    const std::size_t before = out.size();
+    detect_pair(pair, out);
+    if (out.size() == before) continue;
+    Manifold& m = out.back();
+    passing_.turn_normals(m, near_.pose(m.shape_a), bodies[index(m.body_a)], near_.pose(m.shape_b), bodies[index(m.body_b)], h_s);
+  }
 }
 
 }  // namespace tactus::sim

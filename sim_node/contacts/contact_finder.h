@@ -9,6 +9,7 @@
 #include "sim_node/model/body_motion.h"
 #include "sim_node/collision/detector.h"
 #include "sim_node/contacts/friction_maps.h"
+#include "sim_node/contacts/passing_shapes.h"
 #include "sim_node/model/manifold.h"
 #include "sim_node/collision/detectors/near_pairs.h"
 #include "sim_node/settings.gen.h"
@@ -26,7 +27,7 @@ class ContactFinder {
   // Writes the contacts of the bodies `active` (ascending indices of moving bodies) among each other and with all
   // static bodies into `out`, after clearing it. Tools are ghosts without contacts. Inactive moving bodies are
   // ignored. Each pair is searched up to the gap that may close within h_s, from velocities, rotation, sizes and
-  // gravity, plus the contact tolerance. bodies: of the whole world; entries of static bodies are not read. Ordered
+  // gravity, plus the contact tolerance. The normals of shapes that pass each other are at a right angle to their motion. bodies: of the whole world; entries of static bodies are not read. Ordered
   // by (shape_a, shape_b). Points are reduced to four. depth_m is negative for a gap. The cost depends on the number
   // of active bodies only. Deterministic. Real-time safe once its lists have grown. One finder is not thread-safe;
   // two threads may use two finders.
@@ -40,6 +41,7 @@ class ContactFinder {
 
   NearPairs near_;
   FrictionMaps friction_;
+  PassingShapes passing_;
   std::vector<int> body_of_;                 // per shape
   std::vector<ShapeKind> kinds_;             // per shape
   std::unique_ptr<Detector> gaps_, chosen_;  // chosen_: null when it is `gaps`

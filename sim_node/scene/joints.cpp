@@ -63,6 +63,8 @@ void read_limit(const LoadContext& context, const sdf::Element* limit, bool has_
     const double lower = value("lower", -kNoLimit), upper = value("upper", kNoLimit);
     if (lower > upper) context.reject(*limit, "has a lower limit above its upper limit");
     axis.lower = std::max(lower, -kNoLimit), axis.upper = std::min(upper, kNoLimit);
+    if (lower > 0 || upper < 0)
+      context.warn(*limit, "excludes 0, at which the joint starts: the simulation moves it to the nearer limit within seconds");
   }
   const double effort = value("effort", -1);
   if (effort >= 0 && effort < 1e15) axis.effort = effort;

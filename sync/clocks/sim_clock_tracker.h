@@ -25,7 +25,7 @@ class SimClockTracker {
   // the messages is accepted after the same time.
   static constexpr Nanoseconds kSilence = SingleSender::kSilence;
   // A new incarnation is followed when the current one has been silent for this time. Shorter than the silence of a simulation
-  // that is reset (its setting new_life_silence, at least 80 ms).
+  // that is reset (its setting restart_silence, at least 80 ms).
   static constexpr Nanoseconds kTakeOver{75'000'000};
   // A publish_time_ns that falls back by more than this means that a log is replayed again.
   static constexpr Nanoseconds kMaxStepBack{1'000'000'000};

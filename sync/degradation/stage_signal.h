@@ -27,7 +27,7 @@ class StageSignal {
   const ForceSample& step(HostTime now, SimTime world, const ForceSample& sample, OperatorChain& operators,
                           Decisions* decisions = nullptr);
   const ForceSample& delivered() const { return delivered_; }
-  // Forgets all samples: the delivered force is zero.
+  // Clears all samples: the delivered force is zero.
   void clear();
 
  private:

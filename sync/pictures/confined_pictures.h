@@ -1,5 +1,5 @@
-// Decodes pictures in a confined process, the program read_pictures (sync/sandbox/README.md). Pictures come from files of
-// strangers, and over the bus.
+// Decodes pictures in a confined process, the program read_pictures (sync/sandbox/README.md). Pictures come from untrusted
+// files, and over the bus.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Decodes pictures by libpng and libjpeg, in this process. Only the program read_pictures and tests link these functions; nodes
-// use ConfinedPictures, because pictures are files of strangers.
+// use ConfinedPictures, because pictures are untrusted files.
 #pragma once
 
 #include <cstdint>

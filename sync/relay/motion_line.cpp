@@ -77,7 +77,7 @@ std::optional<tool_state_t> MotionReceiver::motion_at(Hand& hand, HostTime now) 
 void MotionReceiver::publish(HostTime now, const Out& out) {
   for (const auto& [key, m] : arrived_) out(encode(m));
   for (auto& [key, hand] : hands_) {
-    const bool arrived = std::any_of(arrived_.begin(), arrived_.end(), [&](const auto& a) { return a.first == key; });
+    const bool arrived = std::any_of(arrived_.begin(), arrived_.end(), [&of = key](const auto& a) { return a.first == of; });
     if (arrived) continue;
     if (const auto m = motion_at(hand, now)) out(encode(*m));
   }

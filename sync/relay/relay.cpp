@@ -57,7 +57,7 @@ std::string Relay::status_text(HostTime now) {
     const OutboxCounts before = std::exchange(reported_counts_[i], line);
     const double kbit_s =
         8e-3 * static_cast<double>(line.bytes - before.bytes) / std::max(1e-3, to_seconds(now - reported_at_));
-    text += (i > 0 ? "; " : "") + sites_[i].name + (silent(i, now) ? ": not heard" : ": heard") + ", " +
+    text += (i > 0 ? "; " : "") + sites_[i].name + (silent(i, now) ? ": nothing received" : ": received") + ", " +
             std::to_string(std::lround(kbit_s)) + " kbit/s there";
     if (line.late > before.late)
       text += ", " + std::to_string(line.late - before.late) + " given up, the line is too slow";

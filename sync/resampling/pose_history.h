@@ -35,7 +35,7 @@ class PoseHistory {
   // Whether a second process of the tool has sent within the last 0.3 s.
   bool conflict(HostTime now) const { return followed_.conflict(now); }
   // Removes all reports, because they belong to an earlier world.
-  void forget() { samples_.clear(); }
+  void clear() { samples_.clear(); }
   // kNone: no report has arrived. After kStaleAfter it is the last pose with kStale.
   Sample<BodyPose> at(HostTime t) const;
 

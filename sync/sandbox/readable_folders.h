@@ -1,4 +1,4 @@
-// The folders from which the files that a stranger's file names may be read.
+// The folders from which files that an untrusted file names may be read.
 #pragma once
 
 #include <filesystem>

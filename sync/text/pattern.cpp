@@ -10,7 +10,7 @@ struct Pattern::Compiled {
 };
 
 Pattern::Pattern(const std::string& expression) try
-    : compiled_(std::make_shared<Compiled>(std::regex(expression, std::regex::extended | std::regex::optimize))) {
+    : compiled_(std::make_shared<Compiled>(Compiled{std::regex(expression, std::regex::extended | std::regex::optimize)})) {
 } catch (const std::regex_error&) {
   throw std::invalid_argument(expression + ": is not a regular expression");
 }

@@ -123,10 +123,10 @@ int main(int argc, char** argv) try {
   std::map<std::string, sync::PairRecord> others;
   for (const std::string& name : expected)
     if (name != host) others[name];
-  std::int64_t strangers = 0, refused = 0;
+  std::int64_t other_doctors = 0, refused = 0;
   const auto process = [&](const sync::PairDatagram& m, int ttl, sync::HostTime at) {
     if (m.run != run) {
-      ++strangers;
+      ++other_doctors;
       return;
     }
     const auto other = others.find(m.from);
@@ -163,10 +163,10 @@ int main(int argc, char** argv) try {
     socket.listen(sync::host_now() + kPeriod * 5, process);
   }
 
-  nlohmann::json result{{"host", host}, {"asked", asked}, {"burst", burst}, {"refused", refused}, {"strangers", strangers},
+  nlohmann::json result{{"host", host}, {"asked", asked}, {"burst", burst}, {"refused", refused}, {"other_doctors", other_doctors},
                       {"ttl", bus.ttl}, {"buffer_bytes", socket.buffer_bytes()}, {"others", nlohmann::json::object()}};
   for (const auto& [name, r] : others) {
-    nlohmann::json& o = result["others"][name] = {{"heard", r.received()}, {"answered", r.replied()}, {"lost", r.lost()},
+    nlohmann::json& o = result["others"][name] = {{"received", r.received()}, {"answered", r.replied()}, {"lost", r.lost()},
                                                 {"of_bursts", r.burst_datagrams()}, {"ttl", r.ttl()}};
     if (r.replied())
       o.update({{"round_trip_us", {{"least", us(r.round_trip(0))}, {"p50", us(r.round_trip(0.5))}, {"p99", us(r.round_trip(0.99))}}},

@@ -223,7 +223,7 @@ int main(int argc, char** argv) try {
   const sync::MappedLog file(log, selection_options.verbatim ? sync::LogTypes::kAny : sync::LogTypes::kCurrent);
   sync::LogIndex index(file.bytes());
   index.read_all();
-  const sync::RecordedRun& recorded = naming(log, [&]() -> const sync::RecordedRun& { return index.run(run); });
+  const sync::RecordedRun& recorded = naming(log, [&]() -> const sync::RecordedRun& { return index.run(arguments.run); });
   const sync::LogOrigin& origin = recorded.origin;
   if (!origin.known && !selection_options.verbatim && !only_describe && index.events() > 0)
     std::cerr << "replay: " << sync::printable(log) << " holds no message of Tactus; it is played as it is\n";
@@ -231,7 +231,7 @@ int main(int argc, char** argv) try {
   play.from_head = selection_options.verbatim;
   sync::ReplaySelection selection(selection_options);
   const int played = selection_options.verbatim ? sync::TimestampedEvents::kWholeFile : run;
-  sync::Replay replay_of_log = naming(log, [&] { return sync::Replay(index, played, play, sync::host_now()); });
+  sync::Replay replay_of_log = naming(log, [&] { return sync::Replay(index, played, arguments.play, sync::host_now()); });
   sync::Replay* const replay = &replay_of_log;
   const std::vector<sync::Asset> assets = selection_options.verbatim ? std::vector<sync::Asset>() : sync::scene_of(file.bytes(), recorded);
   if (only_describe) return describe(index, run, assets, replay->length_s()), 0;
@@ -252,7 +252,7 @@ int main(int argc, char** argv) try {
   sync::Lines lines;
   std::vector<std::uint8_t> message;
   bool quit = false, end_reported = false;
-  const auto status_text = [&] { return position_text(*replay, index, play, port.refused()); };
+  const auto status_text = [&] { return position_text(*replay, index, arguments.play, port.refused()); };
   Beginning beginning(*replay, {.awaited = selection_options.live, .run_id = options.run_id, .max_wait = sync::from_seconds(ready_timeout_s)},
                       scene.has_value());
   sync::HostTime next_status{};

@@ -93,7 +93,7 @@ TEST_CASE("After a reset or restore every modality starts with the new world, an
     for (const char* sense : {"haptic", "audio", "visual"}) presented[sense] = c.presented(sense);
     for (const auto& [sense, before] : presented) {
       INFO(sense);
-      CHECK(c.wait_for([&] { return c.presented(sense) > before + 1; }));
+      CHECK(c.wait_for([&, &of = sense, first = before] { return c.presented(of) > first + 1; }));
     }
     for (const std::int64_t id : c.monitor.contact_ids()) CHECK(!old_ids.contains(id));
     CHECK(c.wait_for([&] { return c.all_running(kNodes); }));

@@ -48,7 +48,7 @@ const SceneView& FrameComposer::load(const scene_t& scene, const Meshes& meshes,
   scene_ = scene;
   std::erase_if(tools_, [this](const auto& tool) { return !may_show(tool.first); });
   head_tool_ = head_of(scene);
-  head_.forget();
+  head_.clear();
   view_.emplace(scene, meshes, settings, height_maps, std::move(look_files));
   flashes_ = Flashes(settings);
   ledger_.set(settings);

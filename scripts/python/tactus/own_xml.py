@@ -7,10 +7,15 @@ LARGEST_BYTES = 1_000_000
 ENCODINGS = ("UTF-8", "US-ASCII", "ASCII")  # of the declaration of a file; ASCII is a part of UTF-8
 
 
+def quoted(text):
+    """`text` as the value of an attribute, with its quotes."""
+    from xml.sax.saxutils import quoteattr  # loads slowly
+    return quoteattr(text)
+
+
 def root_of(path, text, kind, shipped=(), largest_bytes=LARGEST_BYTES, keeps_comments=False):
     """(root element, bytes) of the file at `path`. text: the file as the user named it, for messages; kind: "a study file", for example; shipped: names of
     the shipped files of this kind; keeps_comments: for a file that is written again. Raises Refusal with the line."""
-    from lxml import etree  # slow to import
     shipped = ", ".join(shipped)
     try:
         data = own_files.read_regular(path, largest_bytes)
@@ -19,6 +24,7 @@ def root_of(path, text, kind, shipped=(), largest_bytes=LARGEST_BYTES, keeps_com
     if len(data) > largest_bytes:
         raise Refusal(f"{text}: is longer than {largest_bytes} bytes; give {kind}")
     decoded(data, text)
+    from lxml import etree  # loads slowly
     try:
         root = etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=not keeps_comments, remove_pis=not keeps_comments))
     except etree.XMLSyntaxError as error:

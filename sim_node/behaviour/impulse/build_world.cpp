@@ -71,11 +71,20 @@ class Builder {
       begin(static_cast<int>(i), nullptr, false);
       finish();
     }
-    for (const ShapeDef& s : def_.shapes) world_->add_surface({s.friction, s.restitution});
+    for (const ShapeDef& s : def_.shapes) world_->add_surface({s.friction, s.restitution, round_shape(s)});
     return std::move(world_);
   }
 
  private:
+  RoundShape round_shape(const ShapeDef& s) const {
+    RoundShape out;
+    if (s.kind == ShapeKind::kSphere || s.kind == ShapeKind::kCapsule) out.kind = RoundShape::Kind::kCapsule;
+    if (s.kind == ShapeKind::kCylinder) out.kind = RoundShape::Kind::kCylinder;
+    if (s.kind == ShapeKind::kCapsule) out.half_length_m = s.size_m.z() / 2;
+    out.centre_m = s.pose.translation() - def_.bodies[index(s.body)].centre_of_mass_m;
+    out.axis = s.pose.linear().col(2);
+    return out;
+  }
   bool moves(int body) const {
     return body >= 0 && !def_.bodies[index(body)].is_static && def_.bodies[index(body)].tool < 0;
   }

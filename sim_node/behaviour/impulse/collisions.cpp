@@ -212,11 +212,10 @@ void Collisions::move_to(ContactGroup& g, double t) {
     ContactPoint& p = rows_->points[static_cast<std::size_t>(g.first + i)];
     p.drift_m_s.setZero();
     Eigen::Vector3d by = Eigen::Vector3d::Zero();
-    const auto moves = [&](const MovedBody& m, const Eigen::Vector3d& arm) -> Eigen::Vector3d { return m.shift_m + m.rotation * arm - arm; };
-    if (p.a) by += moves(moved_[0], p.arm_a) / 2;
-    if (p.b) by += moves(moved_[1], p.arm_b) / 2;
-    // A point on a static surface stays on the plane of the moving one.
-    if (!p.a || !p.b) by *= 2;
+    if (p.a) by += (moved_[0].shift_m + g.round_a.displacement_m(p.arm_a, moved_[0].turn_rad)) / 2;
+    if (p.b) by += (moved_[1].shift_m + g.round_b.displacement_m(p.arm_b, moved_[1].turn_rad)) / 2;
+    // Beside a static surface the point is on the moving one. It was found in the middle of the gap.
+    if (!p.a || !p.b) by = 2 * by + (p.b ? 0.5 : -0.5) * (p.gap_m + limits_.shell_m) * p.axes.row(0).transpose();
     if (p.a) p.arm_a += by - moved_[0].shift_m;
     if (p.b) p.arm_b += by - moved_[1].shift_m;
     rows_->compute_mobility(p);

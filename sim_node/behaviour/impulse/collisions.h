@@ -17,6 +17,7 @@ class Collisions {
   struct Limits {
     double bounce_speed_m_s = 0.02;  // slower impacts, beyond what a step adds, are left to the contact solver
     double touching_m = 1e-4;        // points whose gap is within this of the first collide together with it
+    double shell_m = 0;              // gap of the surfaces at which they meet
   };
   explicit Collisions(Limits limits) : limits_(limits) {}
 
@@ -31,7 +32,7 @@ class Collisions {
   void resolve(ContactRows& rows, double h_s, const std::vector<std::size_t>& first_rate, const Velocities& drift,
                Velocities& velocity, Velocities& position_offset);
 
-  // Before resolve(): forgets the impacts of a free body. The cost of a step depends on the bodies that take part only.
+  // Before resolve(): clears the impacts of a free body. The cost of a step depends on the bodies that take part only.
   void begin_step(std::size_t twist) {
     if (blows_.size() <= twist) blows_.resize(twist + 1);
     blows_[twist] = {};

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "sim_node/behaviour/impulse/round_shape.h"
+
 namespace tactus::sim::impulse {
 
 // Velocities of all moving bodies: twists of free bodies, and the joint rates of all systems in sequence. Twist 0
@@ -60,6 +62,7 @@ struct ContactGroup {
   int first = 0, count = 0, manifold = 0;
   int mover_a = -1, mover_b = -1;  // index of a twist, or beyond those of a system; -1: static
   double restitution = 0;
+  RoundShape round_a = {}, round_b = {};  // world axes, of free bodies
   // Impacts in the step: their number, the times of the first and the last after its start, and the point and speed
   // of the first. Without an impact, the predicted meeting of the free motion. met: -1: none.
   int impacts = 0, first_impact_point = -1;

@@ -11,6 +11,10 @@ constexpr double kNoLimit = 1e15;
 constexpr double kUnbounded = std::numeric_limits<double>::max();
 // A limit further away than this number of steps at the current rate plus this distance, rad or m, gets no row.
 constexpr double kStepsAhead = 4, kAhead = 0.05;
+// Time in which a joint that is far outside its limits returns by two thirds, s; design.
+constexpr double kReturn_s = 0.5;
+// Violations up to this are rounding, m or rad.
+constexpr double kWithin = 1e-9;
 
 bool of_ball(const articulated::Tree& tree, const articulated::Dof& d) {
   return tree.links[static_cast<std::size_t>(d.link)].dofs == 3;
@@ -42,8 +46,7 @@ bool needs_rows(const articulated::ArticulatedSystem& system) {
   return false;
 }
 
-void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h, double correction_share,
-                 JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
+void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h, JointImpulses& memory, std::vector<JointRow>& rows, std::vector<double>& pool) {
   const auto& dofs = system.tree().dofs;
   const std::size_t n = dofs.size();
   for (std::size_t j = 0; j < n; ++j) {
@@ -74,10 +77,28 @@ void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate,
     }
     if (d.motor_effort > 0) add(d.motor_velocity, 0, -h * d.motor_effort, h * d.motor_effort, memory.motor[j]);
     if (d.friction > 0 && !ball) add(0, 0, -h * d.friction, h * d.friction, memory.friction[j]);
-    const auto parting = [&](double room) { return room >= 0 ? -room / h : -correction_share * room / h; };
+    // Up to the limit within the step. Beyond it positions are corrected (limit_corrections), which leaves no speed.
+    const auto parting = [&](double room) { return -std::max(0.0, room) / h; };
     if (low) add(parting(q - d.lower), 0, 0, kUnbounded, memory.limit[j]);
     if (high) add(-parting(d.upper - q), 0, -kUnbounded, 0, memory.limit[j]);
   }
+}
+
+bool limit_corrections(const articulated::ArticulatedSystem& system, double h, double share, double speed, std::vector<double>& by) {
+  const auto& dofs = system.tree().dofs;
+  by.assign(dofs.size(), 0);
+  bool any = false;
+  for (std::size_t j = 0; j < dofs.size(); ++j) {
+    const articulated::Dof& d = dofs[j];
+    if (d.coordinate < 0) continue;
+    const double q = system.state().positions[static_cast<std::size_t>(d.coordinate)];
+    const double beyond = d.lower > -kNoLimit && q < d.lower ? d.lower - q : d.upper < kNoLimit && q > d.upper ? d.upper - q : 0;
+    if (std::abs(beyond) <= kWithin) continue;
+    const double distance = std::abs(beyond);
+    by[j] = std::copysign(std::min(share * distance, h * std::max(speed, distance / kReturn_s)), beyond);
+    any = true;
+  }
+  return any;
 }
 
 void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h,

@@ -31,11 +31,13 @@ struct JointImpulses {
 // Whether a system has such constraints.
 bool needs_rows(const articulated::ArticulatedSystem& system);
 
-// Appends the rows of a system whose rates begin at first_rate. correction_share: share of a limit violation that
-// is corrected in a step. Responses go to the pool.
-void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,
-                 double correction_share, JointImpulses& memory, std::vector<JointRow>& rows,
-                 std::vector<double>& pool);
+// Appends the rows of a system whose rates begin at first_rate. Responses go to the pool.
+void append_rows(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s, JointImpulses& memory,
+                 std::vector<JointRow>& rows, std::vector<double>& pool);
+
+// Writes the displacement of each degree of freedom that is outside its limits, m or rad: `share` of the violation in a step,
+// at most at `speed`, m/s or rad/s, or back within a second from far away. Returns whether any is.
+bool limit_corrections(const articulated::ArticulatedSystem& system, double h_s, double share, double speed, std::vector<double>& by);
 
 // The same for dry friction of ball joints, three rows each.
 void append_ball_friction(articulated::ArticulatedSystem& system, std::size_t first_rate, double h_s,

@@ -139,6 +139,8 @@ void World::build_rows(std::span<const Manifold> contacts, double h) {
     ContactGroup g{
         static_cast<int>(rows_.points.size()),   m.count, static_cast<int>(i), mover_number(a), mover_number(b),
         std::min(sa.restitution, sb.restitution)};
+    if (a.kind == Kind::kFree) g.round_a = sa.round.turned(free_[index(a.index)].orientation);
+    if (b.kind == Kind::kFree) g.round_b = sb.round.turned(free_[index(b.index)].orientation);
     for (const ManifoldPoint& at : m.used()) {
       ContactPoint p;
       p.axes.row(0) = at.normal;
@@ -178,8 +180,7 @@ void World::build_joints(double h) {
   for (std::size_t s = 0; s < systems_.size(); ++s)
     if (systems_[s].has_rows && present_[index(systems_[s].bodies[0])]) {
       const std::size_t first = joints_.size();
-      append_rows(systems_[s].system, first_rate_[s], h, law_.correction_share, systems_[s].memory, joints_,
-                  rows_.pool);
+      append_rows(systems_[s].system, first_rate_[s], h, systems_[s].memory, joints_, rows_.pool);
       append_ball_friction(systems_[s].system, first_rate_[s], h, systems_[s].memory, joints_, rows_.pool);
       for (std::size_t j = first; j < joints_.size(); ++j)
         joints_[j].mover = static_cast<int>(free_.size() + 1 + s);
@@ -218,6 +219,8 @@ void World::finish(std::size_t s, double h) {
     }
     if (changed) system.system.add_rates(scratch_);
   }
+  if (system.has_rows && limit_corrections(system.system, h, law_.correction_share, law_.max_correction_speed_m_s, scratch_))
+    system.system.displace(scratch_);
   system.system.step(h);
   for (std::size_t i = 0; i < system.system.tree().links.size(); ++i) {
     BodyMotion& m = motions_[index(system.bodies[i])];

@@ -36,6 +36,7 @@ struct ContactLaw {
 struct Surface {
   double friction = 0.5,
          restitution = 0;  // a pair uses the geometric mean of friction and the smaller restitution
+  RoundShape round = {};   // in the axes of the body at rest
 };
 
 // State of a unit, by value: a free body, or all links of a system.
@@ -50,7 +51,7 @@ struct UnitState {
 
 class World {
  public:
-  explicit World(ContactLaw law = {}) : law_(law), collisions_({law.bounce_speed_m_s, law.slop_m}) {}
+  explicit World(ContactLaw law = {}) : law_(law), collisions_({law.bounce_speed_m_s, law.slop_m, law.shell_m}) {}
 
   // Each returns the next body index, from 0.
   int add_fixed();

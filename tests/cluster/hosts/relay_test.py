@@ -181,7 +181,7 @@ class Sites(unittest.TestCase):
     def test_31_a_disconnected_site_is_named_and_the_others_continue(self):
         before = self.incarnations()
         self.r.lab.hosts["far"].cut()
-        self.wait(lambda: "10.77.0.3:7700: not heard" in self.note("relay_near"), "the relay names the unreachable site")
+        self.wait(lambda: "10.77.0.3:7700: nothing received" in self.note("relay_near"), "the relay names the unreachable site")
         summaries = self.record_at(["near"], 3)
         self.assertEqual(0, summaries["near"]["contacts"]["by_modality"]["audio"]["lost"])
         for node in ("sim_node", "haptic_node", "audio_node"):

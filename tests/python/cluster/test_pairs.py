@@ -9,9 +9,9 @@ from tactus.cluster import pairs
 
 
 def host(name, others):
-    other = {"heard": True, "answered": True, "lost": 0.0, "of_bursts": 300, "ttl": 1, "offset_us": 5e6, "uncertainty_us": 40,
+    other = {"received": True, "answered": True, "lost": 0.0, "of_bursts": 300, "ttl": 1, "offset_us": 5e6, "uncertainty_us": 40,
              "round_trip_us": {"least": 80, "p50": 100, "p99": 300}}
-    return {"host": name, "asked": 250, "burst": 300, "refused": 0, "strangers": 0, "ttl": 1, "buffer_bytes": 4 << 20,
+    return {"host": name, "asked": 250, "burst": 300, "refused": 0, "other_doctors": 0, "ttl": 1, "buffer_bytes": 4 << 20,
             "others": {o: copy.deepcopy(other) for o in others if o != name}}
 
 
@@ -27,7 +27,7 @@ class Pairs(unittest.TestCase):
         self.fail(f"{words} not in {pairs.findings(self.said)}")
 
     def deafen(self, who, to):
-        self.said[who]["others"][to].update(heard=False, answered=False)
+        self.said[who]["others"][to].update(received=False, answered=False)
 
     def test_a_healthy_network_has_no_findings(self):
         self.assertEqual([], pairs.findings(self.said))

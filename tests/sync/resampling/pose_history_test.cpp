@@ -100,10 +100,10 @@ TEST_CASE("A late report and a second process change nothing, and a successor re
   CHECK(h.at(704).status == SampleStatus::kExact);
 }
 
-TEST_CASE("forget() removes all poses, and later poses are not interpolated with them") {
+TEST_CASE("clear() removes all poses, and later poses are not interpolated with them") {
   Heard h;
   REQUIRE(h.at(200).status == SampleStatus::kExact);
-  h.history.forget();
+  h.history.clear();
   CHECK(h.at(200).status == SampleStatus::kNone);
   h.history.push(head_at(404 * kMs), host_time(405 * kMs));
   CHECK(h.at(404).status == SampleStatus::kExact);

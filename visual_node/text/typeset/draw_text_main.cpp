@@ -51,7 +51,7 @@ std::string read_text() {
   return text;
 }
 
-// The text of a study may be that of a stranger, so that a second, confined process of this program draws it.
+// The text of a study is untrusted, so that a second, confined process of this program draws it.
 int check() {
   const std::string input = read_text();
   std::string_view rest = input;

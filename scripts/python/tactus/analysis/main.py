@@ -60,14 +60,14 @@ def parsed(words):
 
 def analyse(options):
     try:
-        from tactus.analysis import result_tables
-        from tactus.analysis import study_analysis
         from tactus.analysis import study_files
         from tactus.analysis import trials
+        files = trials.files_of(options.place)
+        rows = trials.read(files)
+        from tactus.analysis import result_tables  # loads slowly
+        from tactus.analysis import study_analysis
     except ImportError as error:
         raise Refusal(f"{error.name} is missing; {packages_remedy('study')}") from None
-    files = trials.files_of(options.place)
-    rows = trials.read(files)
     share = lambda percent: None if percent is None else percent / 100
     settings = study_analysis.Settings(share(options.margin_success), share(options.margin_time), options.alpha, options.time_limit, options.seed, options.window == "asymmetric",
                                        study_files.stated(files))

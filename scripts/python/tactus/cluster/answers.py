@@ -31,8 +31,8 @@ FORMS = {
 # JSON of programs.
 WATCH = {"nodes": Each({"state": str, "rate_hz": NUMBER, "missed_ticks": int, "input_age_ms": Optional(NUMBER), "contacts_rendered": int, "note": str})}
 DOCTOR = {"lines": [{"what": str, "verdict": str, "found": str, "remedy": str}]}
-PAIRS = {"burst": int, "refused": int, "strangers": int, "ttl": int, "buffer_bytes": int, "others": Each({
-    "heard": NUMBER, "answered": NUMBER, "lost": NUMBER, "of_bursts": int, "ttl": int, "offset_us": Optional(NUMBER), "uncertainty_us": Optional(NUMBER),
+PAIRS = {"burst": int, "refused": int, "other_doctors": int, "ttl": int, "buffer_bytes": int, "others": Each({
+    "received": NUMBER, "answered": NUMBER, "lost": NUMBER, "of_bursts": int, "ttl": int, "offset_us": Optional(NUMBER), "uncertainty_us": Optional(NUMBER),
     "round_trip_us": Optional({"p50": NUMBER, "p99": NUMBER})})}
 
 

@@ -117,7 +117,7 @@ class NodeStates:
                 continue  # incomplete line at the end
 
     def state(self, node):
-        return self.newest.get(node, {}).get("state", "not heard") if time.monotonic() < self.received_s + SILENT_S else "not heard"
+        return self.newest.get(node, {}).get("state", "nothing received") if time.monotonic() < self.received_s + SILENT_S else "nothing received"
 
     def all_running(self, nodes):
         return all(self.state(n) == "running" for n in nodes)

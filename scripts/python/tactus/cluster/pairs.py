@@ -5,7 +5,7 @@ MAX_LOSS = 0.01            # of single datagrams: contact events are repeated fo
 MAX_ROUND_TRIP_US = 20_000  # round trip p99: more than a frame at 60 Hz; sound and picture would both wait for it
 MAX_UNCERTAINTY_US = 1000  # design: a tenth of the smallest asynchrony that a person can distinguish
 BUFFER_BYTES = 4 << 20     # the size that sync/bus/udp_port.cpp requests
-COLUMNS = ("from", "to", "heard", "lost", "of bursts", "round trip p50/us", "p99/us", "clock/s", "+-/us", "ttl")
+COLUMNS = ("from", "to", "received", "lost", "of bursts", "round trip p50/us", "p99/us", "clock/s", "+-/us", "ttl")
 
 
 def findings(results):
@@ -17,11 +17,11 @@ def findings(results):
         if a["buffer_bytes"] < BUFFER_BYTES:
             found.append(f"{host}: the kernel keeps {a['buffer_bytes'] // 1024} kB of received data for a process, not {BUFFER_BYTES // 1024} kB; "
                          f"sysctl net.core.rmem_max={BUFFER_BYTES}")
-        if a["strangers"]:
-            found.append(f"{host}: receives {a['strangers']} datagrams of another doctor; run only one doctor at a time")
+        if a["other_doctors"]:
+            found.append(f"{host}: receives {a['other_doctors']} datagrams of another doctor; run only one doctor at a time")
     for host, a in results.items():
         others = [o for o in a["others"] if o in results]
-        silent = [o for o in others if not a["others"][o]["heard"]]
+        silent = [o for o in others if not a["others"][o]["received"]]
         if others and silent == others and len(others) > 1:
             found.append(f"{host}: receives nothing from the other hosts; {causes(host, results, None)}")
             continue
@@ -29,7 +29,7 @@ def findings(results):
             found.append(f"{host}: receives nothing from {other}; {causes(host, results, other)}")
         for other in others:
             o = a["others"][other]
-            if not o["heard"]:
+            if not o["received"]:
                 continue
             if o["lost"] > MAX_LOSS:
                 found.append(f"{host}: loses {100 * o['lost']:.1f} % of the datagrams of {other}; check cable, switch and wireless link between them")
@@ -41,7 +41,7 @@ def findings(results):
                 found.append(f"{host}: answers of {other} take up to {o['round_trip_us']['p99'] / 1000:.0f} ms (p99), which delays sound and picture or makes them late; use a faster network")
             if o["answered"] and o["uncertainty_us"] > MAX_UNCERTAINTY_US:
                 found.append(f"{host}: the uncertainty of the clock of {other} is {o['uncertainty_us'] / 1000:.1f} ms; use a faster network between them")
-            if not o["answered"] and o["heard"] and results[other]["others"].get(host, {}).get("heard"):
+            if not o["answered"] and o["received"] and results[other]["others"].get(host, {}).get("received"):
                 found.append(f"{host}: {other} receives its datagrams, but the answers are lost; allow UDP of these ports both ways in the firewall")
     return found
 
@@ -51,9 +51,9 @@ def causes(host, results, other):
     own = results[host]
     if any(a["ttl"] == 0 for name, a in results.items() if name == other or other is None):
         return "ttl is 0, so no message leaves a host; set <bus ttl=\"1\"/>"
-    if other is not None and results[other]["others"].get(host, {}).get("heard"):
+    if other is not None and results[other]["others"].get(host, {}).get("received"):
         return (f"{other} receives from {host}: a firewall on {host} drops datagrams, or the switch drops group members (IGMP snooping without a querier)")
-    if other is not None and any(o.get("heard") for name, o in own["others"].items() if name != other):
+    if other is not None and any(o.get("received") for name, o in own["others"].items() if name != other):
         return f"other hosts are connected: check the route of {other} ({GROUP_ROUTE}), its firewall, and whether both are in one network"
     return f"check its route ({GROUP_ROUTE}), its firewall, and whether the switch forwards multicast"
 
@@ -63,8 +63,8 @@ def rows(results):
     found = []
     for to, a in results.items():
         for origin, o in a["others"].items():
-            row = {"from": origin, "to": to, "heard": "yes" if o["heard"] else "NO"}
-            if o["heard"]:
+            row = {"from": origin, "to": to, "received": "yes" if o["received"] else "NO"}
+            if o["received"]:
                 row |= {"lost": f"{100 * o['lost']:.1f} %", "of bursts": f"{o['of_bursts']}/{results[origin]['burst'] if origin in results else '?'}", "ttl": o["ttl"]}
             if o["answered"]:
                 row |= {"round trip p50/us": f"{o['round_trip_us']['p50']:.0f}", "p99/us": f"{o['round_trip_us']['p99']:.0f}",

@@ -18,7 +18,7 @@ only the processes of the cluster. Its environment holds the bus (LCM_DEFAULT_UR
 (TACTUS_RUN_ID) and the services (SVDIR, for sv), and its PATH begins with the programs of Tactus. For example:
 
   tactus attach watch                            the live table
-  tactus attach lcm-logger heard.lcmlog          record with LCM's own logger
+  tactus attach lcm-logger bus.lcmlog            record with LCM's own logger
   tactus attach sv down sim_node                 stop the simulation, and then
   tactus attach lcm-logplayer old/run.lcmlog     replay a log to the modalities; if the simulation still ran, they would
                                                   receive both states alternately

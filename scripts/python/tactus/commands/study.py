@@ -14,7 +14,7 @@ USAGE = """Usage: tactus study VERB ...
   analyse FOLDER...                      computes fits, limits and one report from the results
   replicate [FILE...]                    repeats published experiments with simulated participants, and compares the results
   information [TASK]...                  measures the information that each sense carries about the hidden variable of a task, in bits
-  battery [TASK]...        asks a population of players how far each sense of a task can degrade
+  battery [TASK]...                      asks a population of players how far each sense of a task can degrade
 
 STUDY.xml is a file, or the name of a shipped study:"""
 

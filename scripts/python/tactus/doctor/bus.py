@@ -65,17 +65,17 @@ def loopback():
         except OSError as error:
             return Line("multicast loopback", WEAK, f"cannot send to {GROUP} ({error.strerror})",
                         "ip route add 224.0.0.0/4 dev lo")
-        heard, last = 0, begun
-        while heard < SENT and time.monotonic() - begun < 1:
+        received, last = 0, begun
+        while received < SENT and time.monotonic() - begun < 1:
             if select.select([s], [], [], 0.1)[0]:
                 s.recv(SIZE)
-                heard, last = heard + 1, time.monotonic()
-    figures = {"sent": SENT, "heard": heard, "seconds": round(last - begun, 4)}
-    if heard == 0:
+                received, last = received + 1, time.monotonic()
+    figures = {"sent": SENT, "received": received, "seconds": round(last - begun, 4)}
+    if received == 0:
         return Line("multicast loopback", WEAK, "no sent message is received",
                     f"allow UDP to {GROUP} from this machine to itself in the firewall", figures)
-    if heard < SENT:
-        return Line("multicast loopback", WEAK, f"{heard} of a burst of {SENT} messages were received",
+    if received < SENT:
+        return Line("multicast loopback", WEAK, f"{received} of a burst of {SENT} messages were received",
                     f"sysctl net.core.rmem_max={ROOM}", figures)
     return Line("multicast loopback", GOOD, f"all of a burst of {SENT} messages of {SIZE} bytes were received in "
                 f"{1000 * (last - begun):.1f} ms", figures=figures)

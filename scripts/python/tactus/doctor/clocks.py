@@ -26,7 +26,7 @@ def map_of(packet):
 
 
 def listen(port, seconds):
-    maps, heard = {}, 0
+    maps, received = {}, 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
         try:
             s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -38,15 +38,15 @@ def listen(port, seconds):
         end = time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             if select.select([s], [], [], left)[0]:
-                heard += 1
+                received += 1
                 if found := map_of(s.recv(65536)):
                     maps[found[:2]] = found[2:]
-    return maps, heard
+    return maps, received
 
 
 def offsets(port, seconds=1.5):
-    maps, heard = listen(port, seconds)
-    if not heard:
+    maps, received = listen(port, seconds)
+    if not received:
         return Line("other clocks", GOOD, f"no cluster on port {port}: nothing to compare", figures={"hosts": 0})
     if not maps:
         return Line("other clocks", GOOD, "a cluster runs on one clock", figures={"hosts": 1})

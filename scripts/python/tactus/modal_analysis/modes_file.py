@@ -3,9 +3,8 @@ import csv
 import math
 import os
 import re
-from xml.sax.saxutils import quoteattr
 
-from tactus import terminal
+from tactus import own_xml, terminal
 from tactus.refusal import Refusal
 from tactus.paths import SCENES
 from tactus.tables import read_rows
@@ -53,9 +52,9 @@ def write_xml(path, analysis, name, base):
         raise Refusal(f"--out {path}: the material names its table, so its name must be UTF-8 without control characters; rename it")
     write_csv(table, analysis.modes)
     law = analysis.law
-    words = [f"name={quoteattr(name)}"] + ([f"base={quoteattr(base)}"] if base else [])
+    words = [f"name={own_xml.quoted(name)}"] + ([f"base={own_xml.quoted(base)}"] if base else [])
     words += [f'rayleigh_alpha="{law["rayleigh_alpha_1_s"]:.6g}"', f'rayleigh_beta="{law["rayleigh_beta_s"]:.6g}"',
-              f"modes={quoteattr(os.path.basename(table))}"]
+              f"modes={own_xml.quoted(os.path.basename(table))}"]
     try:
         with open(path, "w", encoding="utf-8") as file:
             file.write(f"<tactus:material {' '.join(words)}/>\n")

@@ -4,7 +4,6 @@ import pathlib
 
 from tactus import own_xml
 from tactus.paths import SCRIPTS
-from tactus.psychophysics import functions, procedures
 from tactus.refusal import Refusal
 
 SCHEMA = pathlib.Path(__file__).with_name("replication.xsd")
@@ -162,6 +161,7 @@ class Reading:
         if kind == "constant" and sum(len(c.levels) for c in found) * spec["repetitions"] > MAX_TRIALS:
             self.refuse(e, f"a participant has more than {MAX_TRIALS} trials; reduce the repetitions")
         try:
+            from tactus.psychophysics import procedures  # loads slowly
             for c in found:
                 procedures.make_procedure({**spec, **({"levels": list(c.levels)} if kind == "constant" else {})}, 1)
         except ValueError as error:
@@ -199,6 +199,7 @@ class Reading:
         return tuple(found)
 
     def fitted(self, e, answer):
+        from tactus.psychophysics import functions  # loads slowly
         shape = functions.FUNCTIONS.get(e.get("function"))
         if shape is None or shape.dimensions != 1:
             self.refuse(e, f"there is no function {e.get('function')} of one level; choose from {', '.join(n for n, f in functions.FUNCTIONS.items() if f.dimensions == 1)}")

@@ -11,7 +11,7 @@ import time
 from tactus import own_files, tables, terminal
 from tactus.commands import prepare
 from tactus.refusal import Refusal, sentence_of
-from tactus.replication import experiment_file, measures, participants, verdict
+from tactus.replication import experiment_file, participants, verdict
 
 USAGE = """Repeats published experiments with simulated participants of a population, and prints published value, own value, interval over participants and verdict.
 Levels, procedure and analysis are those of the file. A participant perceives the stimuli with latency, noise and belief, and never receives the published
@@ -68,6 +68,7 @@ def replicated(experiment, program, sources, count, seed):
     """(rows of the table, all trials) of one experiment."""
     if experiment.paradigm not in sources:
         raise Refusal(f"{experiment.path}: there is no paradigm {experiment.paradigm}; choose from {', '.join(sources)}")
+    from tactus.replication import measures  # loads slowly
     trials = participants.collected(experiment, program, count, seed)
     resampled = {m.id for m in experiment.measures if m.kind == "first_level"}
     found = {name: (*values, name in resampled) for name, values in measures.of_experiment(experiment, trials, seed).items()}

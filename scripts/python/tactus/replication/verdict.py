@@ -3,7 +3,7 @@ import dataclasses
 import math
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 AGREES, DIFFERS, NOT_REPRODUCIBLE = "agrees", "differs", "not reproducible with this player"
 CALIBRATED = "calibrated, not a replication"
@@ -42,7 +42,7 @@ def of_values(expectation, values, group=None):
     n = len(finite)
     error = float(finite.std(ddof=1)) / math.sqrt(n) if n > 1 else math.nan
     if group is None:
-        half = float(student.ppf(0.975, n - 1)) * error if n > 1 else math.nan
+        half = float(stdtrit(n - 1, 0.975)) * error if n > 1 else math.nan
         low, high = mean - half, mean + half
     else:
         low, high = (float(x) for x in np.quantile(finite, [0.025, 0.975]))
@@ -67,7 +67,7 @@ def compared(e, mean, n, error, is_group, from5, to95):
             return False, "the mean is in the range, but the published value is outside the participants"
         return True, ""
     # One participant has no bound.
-    margin = float(student.ppf(ONE_SIDED, n - 1)) * error if n > 1 and not is_group else 0.0 if is_group else math.inf
+    margin = float(stdtrit(n - 1, ONE_SIDED)) * error if n > 1 and not is_group else 0.0 if is_group else math.inf
     if e.low is not None:
         agrees = mean - margin > e.low
         inside = mean > e.low

@@ -6,8 +6,7 @@ import random
 import re
 import zlib
 
-from tactus.psychophysics import procedures
-from tactus.study import procedure_element, quantities, study_file
+from tactus.study import quantities, study_file
 
 FUNCTIONS = {"synchrony": ("synchrony_window", None), "order": ("order", None), "two_interval": ("cumulative_gaussian", {"guess": 0.5})}
 FEWEST_FOR_A_FIT = 30  # answers; a running estimate from fewer is meaningless (design)
@@ -65,6 +64,8 @@ class Plan:
             self.games = study.procedure.get("repetitions", 1)
             self.sequence = [i for block in range(self.games) for i in order_of(len(study.conditions), study.counterbalance, participant, block, self.seed)]
         else:
+            from tactus.psychophysics import procedures  # loads slowly
+            from tactus.study import procedure_element
             self.procedures = [procedures.make_procedure(procedure_element.of_condition(study.procedure, c), self.draw(f"procedure {c.id}")) for c in study.conditions]
 
     def draw(self, what):
@@ -124,7 +125,7 @@ class Plan:
         name, fixed = FUNCTIONS[self.study.response]
         if procedure.done < FEWEST_FOR_A_FIT:
             return None
-        from tactus.psychophysics import fits  # loads slowly
+        from tactus.psychophysics import fits, procedures  # loads slowly
         fit = fits.fit(*procedures.counts(procedure.history), name, fixed)
         return {k: float(v) for k, v in list(fit.params.items())[:2]} if fit.converged else None
 

@@ -4,7 +4,7 @@ import os
 
 from tactus import terminal
 from tactus.refusal import Refusal, sentence_of
-from tactus.study import fonts, session, study_file, texts
+from tactus.study import fonts, study_file, texts
 
 USAGE = """Runs a session of one participant on a live cluster: instructions, trials, questions, breaks. Every trial applies its profile to every
 sense, presents its stimulus, and reads the measured presentation times. A trial that misses the tolerance of the study is marked and repeated.
@@ -56,6 +56,7 @@ def main(words):
             raise Refusal(f"{options.study}: has no <observer> for {next(c.id for c in study.conditions if study.observer(c) is None)}; add one, or leave out --simulated")
         if options.window or options.live is not None:
             fonts.provide(study, options.window)
+        from tactus.study import session  # loads slowly
         return session.run_session(study, options)
     except Refusal as refusal:
         terminal.report_refusal(f"study: {refusal}")

@@ -2,8 +2,6 @@
 import dataclasses
 import random
 
-import numpy as np
-
 from tactus.launch import delays
 
 IN_FORCE_TIMEOUT_S = 5.0     # health arrives at 10 Hz; after this time a sense is considered stuck
@@ -86,6 +84,7 @@ def tap(runner, study, trial, seed):
 def felt_stiffness(samples):
     """Stiffness of one press, N/m: least-squares slope of force over depth, of samples (at_ns, z_m, force_N) with a noticeable force; None: there are
     too few."""
+    import numpy as np  # loads slowly
     data = np.array([s for s in samples if s[2] > 0.02], dtype=float).reshape(-1, 3)  # N; about the noise of the device, below the threshold of a fingertip (design)
     if len(data) < 10 or np.ptp(data[:, 1]) < 1e-4:
         return None

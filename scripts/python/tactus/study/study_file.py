@@ -3,15 +3,11 @@ import dataclasses
 import hashlib
 import itertools
 import pathlib
-from xml.sax.saxutils import quoteattr
-
-import numpy as np
 
 from tactus import own_xml, players
 from tactus.paths import SCENES, SCRIPTS
-from tactus.psychophysics import functions, observers
 from tactus.refusal import Refusal
-from tactus.study import conditions, procedure_element, quantities, stages, texts
+from tactus.study import conditions, quantities, stages, texts
 from tactus.study.study_parts import Falsifier, Item, Observer, Stimulus
 
 SCHEMA = pathlib.Path(__file__).with_name("study.xsd")
@@ -67,7 +63,7 @@ class Study:
     def profile(self, condition, level):
         """XML of the degradation profile of a trial; level None: the base alone."""
         name = f"{self.name}: {condition.id}" + ("" if level is None else f" at {level}")
-        return f"<profile name={quoteattr(name)} seed=\"{self.seed}\">" + "".join((*self.base, *condition.elements(level))) + "</profile>"
+        return f"<profile name={own_xml.quoted(name)} seed=\"{self.seed}\">" + "".join((*self.base, *condition.elements(level))) + "</profile>"
 
     def observer(self, condition):
         return self.observers.get(condition.id) or self.observers.get("")
@@ -146,6 +142,7 @@ class Reading:
         return name
 
     def study(self):
+        from tactus.study import procedure_element  # loads slowly
         root, find = self.root, self.root.find
         self.phrases = self.read_phrases(root.findall("phrase"))
         response = find("response")
@@ -200,7 +197,7 @@ class Reading:
 
     def element(self, e):
         self.sense(e, e.get("modality", ""))
-        return "<degrade " + " ".join(f"{k}={quoteattr(v)}" for k, v in e.attrib.items()) + "/>"
+        return "<degrade " + " ".join(f"{k}={own_xml.quoted(v)}" for k, v in e.attrib.items()) + "/>"
 
     def factor(self, e):
         levels = tuple(quantities.read(t, quantities.OPERATORS[e.get("operator")], self.where(e)) for t in e.get("levels").split())
@@ -331,6 +328,9 @@ class Reading:
         return tuple(items)
 
     def observers(self, found, kind):
+        import numpy as np
+
+        from tactus.psychophysics import functions, observers  # loads slowly
         all_of = {}
         for e in self.root.findall("observer"):
             of, name = e.get("of", ""), e.get("function")
@@ -358,6 +358,7 @@ class Reading:
 
     def percept(self, e, name, params, kind):
         """Refuses an observer of felt stiffness in a study that does not compare stiffness."""
+        from tactus.psychophysics import observers  # loads slowly
         if kind != "two_interval" or not self.of(self.root.find("response"), kind):
             self.refuse(e, f"{name} judges which of two presses felt softer; ask for that with <response kind=\"two_interval\" of=\"stiffness\">")
         self.checked(e, lambda: observers.PERCEPTS[name](**params, seed=1))
