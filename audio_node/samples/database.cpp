@@ -93,14 +93,14 @@ class Reader {
   std::optional<double> size_of(const fs::path& folder) {
     std::error_code none;
     if (!fs::exists(folder / "size.txt", none)) return std::nullopt;
-    std::string word;
+    std::string word, more;
     try {
-      std::istringstream(sync::read_regular_text(folder / "size.txt", kMaxSizeBytes)) >> word;
+      std::istringstream(sync::read_regular_text(folder / "size.txt", kMaxSizeBytes)) >> word >> more;
     } catch (const std::runtime_error& e) {
       add_fault(folder / "size.txt", std::string("cannot be read (") + e.what() + "); write one number in metres");
       return std::nullopt;
     }
-    const auto size = positive(word);
+    const auto size = more.empty() || more == "m" ? positive(word) : std::nullopt;
     if (!size) add_fault(folder / "size.txt", "has no size; write one number in metres");
     return size;
   }

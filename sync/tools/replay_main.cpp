@@ -102,6 +102,8 @@ void describe(const sync::LogIndex& index, int number, const std::vector<sync::A
   }
   j["damaged_regions"] = index.damaged_regions();
   j["warnings"] = index.warnings(number);
+  if (index.damaged_regions() > 0)
+    j["warnings"].push_back("the log is damaged in " + std::to_string(index.damaged_regions()) + " places; the messages there are lost");
   std::cout << j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
 }
 

@@ -7,6 +7,7 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <cctype>
 #include <assimp/Importer.hpp>
 #include <fstream>
 #include <iterator>
@@ -18,6 +19,7 @@
 #include "sim_node/scene/meshes/assimp_reason.h"
 #include "sim_node/scene/meshes/collada_size.h"
 #include "sim_node/scene/meshes/mesh_reader.h"
+#include "sim_node/scene/meshes/obj_text.h"
 #include "sync/sandbox/regular_file.h"
 
 namespace tactus::sim {
@@ -34,8 +36,8 @@ class BoundedFiles : public Assimp::DefaultIOSystem {
   bool Exists(const char* file) const override { return may_open(file) && DefaultIOSystem::Exists(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     if (!may_open(file)) return nullptr;
-    Assimp::IOStream* without = open_without_mark(file);
-    return without ? without : DefaultIOSystem::Open(file, mode);
+    Assimp::IOStream* completed = open_completed(file);
+    return completed ? completed : DefaultIOSystem::Open(file, mode);
   }
 
  private:
@@ -54,13 +56,14 @@ class BoundedFiles : public Assimp::DefaultIOSystem {
     return false;
   }
 
-  // Editors begin a text with the byte order mark of UTF-8. The readers of OBJ and MTL would lose its first line. Null: the file has no mark.
-  static Assimp::IOStream* open_without_mark(const char* file) {
-    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  // Null: the file is neither OBJ nor MTL, or is read as it is.
+  static Assimp::IOStream* open_completed(const char* file) {
+    std::string ending = std::filesystem::path(file).extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     std::ifstream in(file, std::ios::binary);
-    std::string begin(kMark.size(), '\0');
-    if (!in.read(begin.data(), static_cast<std::streamsize>(begin.size())) || begin != kMark) return nullptr;
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if ((ending != ".obj" && ending != ".mtl") || !in) return nullptr;
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!complete_obj_text(text)) return nullptr;
     auto copy = std::make_unique<std::uint8_t[]>(text.size());
     std::ranges::copy(text, copy.get());
     return new Assimp::MemoryIOStream(copy.release(), text.size(), true);  // both are owned by the importer

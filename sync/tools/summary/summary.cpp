@@ -208,6 +208,16 @@ std::vector<std::string> RunSummary::absent() const {
 std::vector<std::string> RunSummary::warnings() const {
   std::vector<std::string> out = options_.warnings;
   for (std::string& sentence : warnings_.sentences(matcher_)) out.push_back(printable(sentence));
+  for (std::string& sentence : damage()) out.push_back(std::move(sentence));
+  return out;
+}
+
+std::vector<std::string> RunSummary::damage() const {
+  std::vector<std::string> out;
+  for (const auto& [name, channel] : channels_)
+    if (channel.summary.bad > 0)
+      out.push_back(std::to_string(channel.summary.bad) + " of " + std::to_string(channel.summary.messages) + " messages of " + printable(name) +
+                    " are incomplete or damaged and are left out");
   return out;
 }
 

@@ -81,7 +81,9 @@ class RunSummary {
   std::map<std::string, NodeSummary> nodes() const;
   // Modalities without a report by any node.
   std::vector<std::string> absent() const;
-  // Of the caller, then of the run itself (run_warnings.h).
+  // Messages that could not be decoded, a sentence for each channel.
+  std::vector<std::string> damage() const;
+  // Of the caller, then of the run itself (run_warnings.h), then damage().
   std::vector<std::string> warnings() const;
   const PresentationMatcher& matcher() const { return matcher_; }
   std::map<std::string, ChannelSummary> channels() const;

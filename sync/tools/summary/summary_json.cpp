@@ -150,6 +150,7 @@ std::string to_json(const RunSummary& s) {
                     {"git", s.git()},
                     {"realtime_factor", rounded(s.realtime_factor(), 1e6)},
                     {"warnings", s.warnings()},
+                    {"damage", s.damage()},
                     {"absent", s.absent()},
                     {"nodes", json_of_nodes(s)},
                     {"game", json_of_game(s)},

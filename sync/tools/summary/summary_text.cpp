@@ -110,12 +110,11 @@ std::string to_text(const RunSummary& s) {
       line("%s: %.1f s recorded, real-time factor %.4f, seed %lld%s%s",
            s.scene().empty() ? "scene not said" : s.scene().c_str(), s.recorded_seconds(), s.realtime_factor(),
            static_cast<long long>(s.seed()), s.git().empty() ? "" : ", git ", s.git().c_str());
-  if (s.damaged_regions() > 0)
-    out += line("the log is damaged in %lld places, which are not counted",
-                static_cast<long long>(s.damaged_regions()));
   if (s.holes_seconds() > 0)
     out +=
         line("the log has a hole of %.1f s; nodes may falsely appear stalled or dead there", s.holes_seconds());
+  if (s.damaged_regions() > 0)
+    out += line("the log is damaged in %lld places, which are not counted", static_cast<long long>(s.damaged_regions()));
   for (const std::string& warning : s.warnings()) out += line("%.380s", warning.c_str());
   return out + "\n" + nodes(s) + "\n" + game(s) + contacts(s.matcher()) + absent(s) + "\n" + asynchrony(s.matcher()) + "\n" +
          bus(s);

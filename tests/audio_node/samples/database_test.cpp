@@ -78,7 +78,7 @@ TEST_CASE("Faults of a folder of recordings are listed, and the rest is played")
   folder.write("steel-oak/impact/1.wav", tone(500, 0.2));
   folder.write("oak-steel/impact/1.wav", tone(500, 0.2));
   folder.write("lost.wav", tone(500, 0.2));
-  folder.text("oak/size.txt", "large");
+  folder.text("oak/size.txt", GENERATE("large", "5 cm", "0.05 0.1", ""));
   std::filesystem::create_directories(folder.path() + "/oak/roll");
   // Opening it would block for ever.
   REQUIRE(mkfifo((folder.path() + "/oak/impact/4.wav").c_str(), 0600) == 0);

@@ -7,7 +7,7 @@ import unittest
 import analysis_tables
 import numpy as np
 
-from tactus.analysis import trials
+from tactus.analysis import incomplete, trials
 from tactus.refusal import Refusal
 
 HEADER = "participant_id,task,observer,study,session,trial,level,success,completion_time_s,missed,seed\n"
@@ -50,6 +50,38 @@ class Tables(unittest.TestCase):
         read = trials.read([self.file(HEADER + GOOD + GOOD.replace(",1,1,20", ",1,2,20").replace(",7.5,0", ",7.5,1"))])
         kept, left_out = trials.usable(read)
         self.assertEqual((len(kept), left_out), (1, 1))
+
+    def test_a_degradation_without_its_sense_or_operator_is_refused(self):
+        header = HEADER.replace("level", "modality_degraded,operator,level,unit")
+        for given, clause in (("haptic,delay,20,ms", ""), (",,,", ""), (",delay,0,ms", ""), ("haptic,off,,", ""), (",delay,20,ms", "modality_degraded is empty"),
+                              ("haptic,,20,ms", "operator is empty"), (",off,,", "modality_degraded is empty"), ("haptic,,,", "operator is empty")):
+            text = header + GOOD.replace(",20,1,7.5", f",{given},1,7.5")
+            if clause:
+                self.assertIn(f":2: {clause}", self.refusal(text))
+            else:
+                self.assertEqual(1, len(trials.read([self.file(text)])))
+
+    def test_levels_are_converted_to_the_unit_of_their_operator_or_refused(self):
+        header = HEADER.replace("level", "modality_degraded,operator,level,unit")
+        for given, level, unit in (("haptic,delay,0.2,s", 200, "ms"), ("haptic,delay,20,ms", 20, "ms"), ("haptic,loss,10,%", 10, "%"), ("haptic,loss,10,", 10, "")):
+            read = trials.read([self.file(header + GOOD.replace(",20,1,7.5", f",{given},1,7.5"))])
+            self.assertEqual((level, unit), (read["level"][0], read["unit"][0]))
+        for given in ("haptic,loss,10,percent", "haptic,delay,10,parsec", "haptic,gain,0.5,dB"):
+            self.assertIn(":2: unit is ", self.refusal(header + GOOD.replace(",20,1,7.5", f",{given},1,7.5")))
+
+    def test_a_judgement_under_an_operator_needs_its_level(self):
+        self.assertIn(":2: a trial under delay has no level", self.refusal("participant_id,task,observer,study,session,trial,modality_degraded,operator,level,unit,correct\n"
+                                                                          "P01,2ifc,human,s,1,1,haptic,delay,,ms,1\n"))
+
+    def test_trials_without_an_answer_or_a_measured_level_are_counted(self):
+        header = "participant_id,task,observer,study,session,trial,modality_degraded,operator,level,unit,loss_achieved,correct,pair,soa_achieved_ms,response,success\n"
+        rows = ("2ifc,human,s,1,1,haptic,loss,10,%,0.1,1,,,,", "2ifc,human,s,1,2,haptic,loss,10,%,,1,,,,", "2ifc,human,s,1,3,haptic,loss,10,%,0.1,,,,,",
+                "2ifc,human,s,1,4,haptic,jitter,10,ms,,1,,,,", "sj,human,s,1,5,,,,,,,\"audio,visual\",40,yes,", "sj,human,s,1,6,,,,,,,\"audio,visual\",,yes,",
+                "sj,human,s,1,7,,,,,,,\"audio,visual\",40,,", "game,human,s,1,8,,,,,,,,,,1", "game,human,s,1,9,,,,,,,,,,")
+        read = trials.read([self.file(header + "".join(f"P01,{row}\n" for row in rows))])
+        self.assertEqual([3, 7, 9], [int(n) for n in read["trial"][incomplete.unanswered(read)]])
+        self.assertEqual([2, 6], [int(n) for n in read["trial"][incomplete.unmeasured(read)]])
+        self.assertEqual(["3 are not used because they have no answer", "2 are not used because they have no measured level"], incomplete.words(read))
 
     def test_an_invalid_table_is_refused_with_its_line(self):
         cases = {

@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 PYTHON = ROOT / "scripts" / "python"
 sys.path.insert(0, str(PYTHON))
 from tactus import terminal
-from tactus.analysis import main
+from tactus.analysis import main, trials
 from tactus.report import figures
 
 # Modules that print values directly: numbers, names of this package, JSON, and control sequences for the progress on a terminal.
@@ -49,7 +49,7 @@ class TerminalTexts(unittest.TestCase):
             self.assertTrue(said.getvalue().startswith("a\n") and said.getvalue().endswith(" é 音\n"))
 
     def test_the_names_in_a_table_of_a_stranger_do_not_reach_the_terminal_of_an_analysis(self):
-        analysis = types.SimpleNamespace(trials=[], left_out=0, observer=f"simulated ({HOSTILE[0]})")
+        analysis = types.SimpleNamespace(trials=trials.Trials({}, 0), left_out=0, observer=f"simulated ({HOSTILE[0]})")
         row = {"limit": "L_break", "modality": f"v{HOSTILE[1]}", "operator": HOSTILE[2], "by": HOSTILE[3], "unit": HOSTILE[4], "note": HOSTILE[5], "value": 1.0, "low": 0.5, "high": math.nan, "up_to": 4.0}
         said = io.StringIO()
         with contextlib.redirect_stdout(said):

@@ -98,9 +98,10 @@ def write(options, analysis, made):
 
 
 def print_summary(analysis, made, page, report):
-    from tactus.analysis import operators
+    from tactus.analysis import incomplete, operators
     who = f", observer = {analysis.observer}" if "simulated" in analysis.observer else ""
-    terminal.show(f"study analyse: {len(analysis.trials)} trials, {analysis.left_out} left out because the apparatus missed its tolerance{who}")
+    notes = "".join(f", {clause}" for clause in incomplete.words(analysis.trials))
+    terminal.show(f"study analyse: {len(analysis.trials)} trials, {analysis.left_out} left out because the apparatus missed its tolerance{notes}{who}")
     if "limits" in made:
         terminal.show(f"{'limit':9} {'sense':9} {'operator':10} {'by':34} {'value':>9} {'low':>9} {'high':>9} unit")
         for row in made["limits"]:

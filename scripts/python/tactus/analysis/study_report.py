@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from tactus.analysis import limit_plots, limits, mixed, performance_plots, published, resampling
+from tactus.analysis import incomplete, limit_plots, limits, mixed, performance_plots, published, resampling
 from tactus.analysis.plot_style import figures
 from tactus.analysis.result_tables import degraded_words
 from tactus.report.words import figure as number, listed, page, safe, table
@@ -67,7 +67,8 @@ def head(report):
     studies = sorted({s for s in a.trials["study"] if s}) or ["a study without a name"]
     people = len(a.trials.participants())
     sentences = [f"{number(len(a.trials))} trials and games of {number(people)} participant{'s' if people != 1 else ''} were analysed"
-                 + (f"; {number(a.left_out)} were left out because the apparatus missed its tolerance." if a.left_out else "; none was left out.")]
+                 + (f"; {number(a.left_out)} were left out because the apparatus missed its tolerance." if a.left_out else "; none was left out.")
+                 + "".join(f" {clause}." for clause in incomplete.words(a.trials))]
     if "simulated" in a.observer:
         sentences.append(f"<b>observer = {safe(a.observer)}</b>: no person took part; all results are of simulated participants."
                          if a.observer.startswith("simulated") else "<b>Some observers were simulated</b>; figures and tables mix them with people.")

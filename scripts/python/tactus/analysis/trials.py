@@ -10,7 +10,7 @@ import numpy as np
 
 from tactus.analysis import operators
 from tactus.refusal import Refusal
-from tactus.study import trial_table
+from tactus.study import quantities, trial_table
 
 FILES = ("trials.csv", "games.csv")
 MAX_NAMED = 3  # players in a title; design
@@ -92,15 +92,32 @@ def files_of(places):
     return found
 
 
+def to_unit_of_operator(row):
+    """Converts the levels of a row to the unit of their operator (study/quantities.py). Returns the reason why that cannot be done, or None."""
+    for prefix in ("", "second_"):
+        unit, factors, *_ = quantities.OPERATORS.get(operators.kind(row.get(prefix + "operator") or ""), (None, {}))
+        given = row.get(prefix + "unit") or ""
+        if unit is None or row.get(prefix + "level") is None or given in ("", unit):
+            continue
+        if given not in factors:
+            return f"{prefix}unit is {given}; write levels of {row[prefix + 'operator']} in {' or '.join(factors) or 'no unit'}"
+        row[prefix + "level"] = round(row[prefix + "level"] * factors[given], 9)
+        row[prefix + "unit"] = unit
+    return None
+
+
 def no_severity(row):
     """Reason why the level of a row gives no severity, as a sentence; None: it does, or nothing is degraded."""
     for prefix, modality in (("", "modality_degraded"), ("second_", "second_modality")):
         operator, level = row.get(prefix + "operator"), row.get(prefix + "level")
         kind = operators.kind(operator or "")
+        if not row.get("pair") and bool(row.get(modality)) != bool(operator) and level != 0:
+            empty, full = (modality, prefix + "operator") if operator else (prefix + "operator", modality)
+            return f"{empty} is empty, but {full} is {operator or row.get(modality)}; write both, or neither if nothing is degraded"
         if not row.get(modality) or not operator or kind in operators.REMOVALS:
             continue
-        if level is None and row["task"] == "game":
-            return f"a game under {operator} has no {prefix}level; write its level"
+        if level is None and not row.get("pair"):
+            return f"a {'game' if row['task'] == 'game' else 'trial'} under {operator} has no {prefix}level; write its level"
         falls = kind in operators.LOWER_IS_WORSE and kind != "gain"
         if level is not None and (level < 0 or falls and level == 0):
             return f"{prefix}level is {level:g}; a level of {operator} must be {'above 0; use the operator off for nothing at all' if falls else '0 or more'}"
@@ -117,7 +134,7 @@ def read(files):
             if identity in seen:
                 raise Refusal(f"{where}: the same trial of {row['participant_id']} is already in {seen[identity]}; give each table once")
             seen[identity] = where
-            if sentence := no_severity(row):
+            if sentence := to_unit_of_operator(row) or no_severity(row):
                 raise Refusal(f"{where}: {sentence}")
             kept.append(row)
     if not kept:

@@ -74,7 +74,7 @@ GROUPS = {
                           ("rerun out/first --draws 20 --tool hand --json fit.json", "only under the profile of the log, with 20 hands"))),
     ),
     "Studies": (
-        Command("study", "`study check`, `run`, `sweep`, `analyse`, `replicate`, `information`, `battery`: limits", "tactus.commands.study", "study",
+        Command("study", "`study check`, `run`, `sweep`, `analyse`, `replicate`, `information`, `battery`", "tactus.commands.study", "study",
                 verbs=("check", "run", "sweep", "analyse", "replicate", "information", "battery"), options=("out", "json", "seed"),
                 examples=(("study check audio_visual_synchrony", "plan, duration and power of a shipped study"),
                           ("study run audio_visual_synchrony --participant P01 --simulated", "a session with a simulated participant"),

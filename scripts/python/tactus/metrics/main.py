@@ -61,11 +61,12 @@ def is_log(path):
 
 def read(path, scratch, number):
     """(folder of its tables, LogTables or None). A log is exported into the folder scratch."""
-    from tactus.log import exported, log_tables
+    from tactus.log import description, exported, log_tables
     if not is_log(path):
         return path, None
     folder = os.path.join(scratch, str(len(os.listdir(scratch))))
     exported.tables_of(path, folder, number, "LOG_INFO|DEGRADED|DEGRADATION")
+    description.report_warnings(f"metrics: {path}", description.describe(path, number))
     return folder, log_tables.LogTables(folder, path)
 
 

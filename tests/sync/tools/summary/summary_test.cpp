@@ -217,6 +217,10 @@ TEST_CASE("Missing messages count as gaps and undecodable ones as bad") {
   CHECK(bus.at("NODE_HEALTH").gaps == 3);
   CHECK(bus.at("NODE_HEALTH").bad == 1);
   CHECK(bus.at("NODE_HEALTH").messages == 12);
+  const std::vector<std::string> damage{"1 of 12 messages of NODE_HEALTH are incomplete or damaged and are left out"};
+  CHECK(log.summary().damage() == damage);
+  CHECK(Json::parse(to_json(log.summary()))["damage"] == Json(damage));
+  CHECK(log.summary().warnings() == damage);
 }
 
 TEST_CASE("A damaged log is summarised from its intact messages") {
