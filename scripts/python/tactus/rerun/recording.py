@@ -95,7 +95,6 @@ def hand_of(path, tool):
 def read(log, tool, run):
     """Reads a log, or the folder of one. tool: its name; None: the first. run: its number in the log. Raises Refusal."""
     described = description.describe(log, run)
-    description.report_warnings("rerun", described)
     names = described["tools"]
     if not names:
         raise Refusal(f"{log} has no scene with a tool; give the log of a run that recorded its scene")
@@ -114,6 +113,7 @@ def read(log, tool, run):
         policy = others.policy() or ""
     if not SHORTEST_S <= time_s[-1] - time_s[0] <= LONGEST_S:
         raise Refusal(f"the hand moves for {time_s[-1] - time_s[0]:.3g} s in {log}; give a log of {SHORTEST_S:g} to {LONGEST_S:g} s")
+    description.report_warnings("rerun", described)
     return Recording(number, names[number], number == 0, time_s, position_m, force_N, dt_s, external, commands, profile[0] if profile else "", policy,
                      described.get("scene", ""), int(described.get("seed", 0)), gap_s)
 
