@@ -96,7 +96,7 @@ void PassingShapes::turn_normals(Manifold& m, const Eigen::Isometry3d& pose_a, c
     return -extent_m(m.shape_b, at_b, -across) - extent_m(m.shape_a, at_a, across);
   };
   const double start_m = gap_m(pose_a, pose_b);
-  if (start_m <= kApart_m || gap_m(pose_after(m.shape_a, pose_a, a, h_s), pose_after(m.shape_b, pose_b, b, h_s)) <= kApart_m) return;
+  if (!(start_m > kApart_m) || !(gap_m(pose_after(m.shape_a, pose_a, a, h_s), pose_after(m.shape_b, pose_b, b, h_s)) > kApart_m)) return;
   for (ManifoldPoint& p : m.used()) {
     p.normal = across, p.depth_m = -start_m;
     if (hulls_[index(m.shape_a)].is_round)
