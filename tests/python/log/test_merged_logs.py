@@ -1,12 +1,13 @@
 """Tests of every reader of logs with logs that were merged, swapped, cut together or stamped by a clock that was set."""
 import csv
 import json
+import os
 import pathlib
 import subprocess
 import tempfile
 import unittest
 
-from log_files import BIN, make_run, write_log
+from log_files import BIN, REPOSITORY, make_run, write_log
 
 HOUR_US = 3600 * 1_000_000
 LATENCY_S = 0.002  # a jump is known to one latency
@@ -100,6 +101,18 @@ class MergedLogs(unittest.TestCase):
                 self.assertEqual([row[:-1] for row in expected], [row[:-1] for row in chosen[name]], name)
                 self.assertEqual({"2", "run"} if len(expected) > 1 else {"run"}, {row[-1] for row in chosen[name]}, name)
         self.assertEqual(second["summary"]["contacts"], chosen["summary"]["contacts"])
+
+    def test_messages_that_cannot_be_decoded_are_named_by_summary_report_and_metrics(self):
+        damaged = [(stamp, channel, bytes(8) + data[8:] if channel == b"CONTACT_EVENTS" else data) for stamp, channel, data in self.a]
+        count = sum(channel == b"CONTACT_EVENTS" for _, channel, _ in self.a)
+        sentence = f"{count} of {count} messages of CONTACT_EVENTS are incomplete or damaged and are left out"
+        found = self.tables("undecodable", damaged)
+        self.assertEqual([sentence], found["summary"]["damage"])
+        self.assertIn(sentence, found["summary"]["warnings"])
+        log = self.folder / "undecodable.lcmlog"
+        for words in (("report", log, "--out", self.folder / "undecodable.html"), ("metrics", log)):
+            done = subprocess.run([REPOSITORY / "scripts" / "tactus", *words], capture_output=True, text=True, check=False, env={**os.environ, "TACTUS_BIN": str(BIN)})
+            self.assertEqual(f"{log}: {sentence}", done.stderr.strip(), words)
 
     def test_any_channel_name_is_exported_with_all_bytes_and_is_no_damage(self):
         middle = len(self.a) // 2

@@ -86,6 +86,21 @@ TEST_CASE("A motor applies a constant torque to an axis") {
   CHECK(u.axes[1].motor_effort == 1);
 }
 
+TEST_CASE("Limits that exclude the start of a joint are warned of with their line") {
+  const auto warnings = [](const std::string& limits) {
+    SceneFile file(jointed("revolute", "<axis><xyz>1 0 0</xyz><limit>" + limits + "</limit></axis>"));
+    file.load();
+    return file.warnings;
+  };
+  CHECK(warnings("<lower>-1</lower><upper>1</upper>").empty());
+  CHECK(warnings("<lower>0</lower><upper>1</upper>").empty());
+  for (const std::string limits : {"<lower>0.5</lower><upper>1</upper>", "<lower>-3</lower><upper>-0.1</upper>"}) {
+    const auto found = warnings(limits);
+    REQUIRE(found.size() == 1);
+    CHECK_THAT(found[0], Catch::Contains("scene.sdf:6: ") && Catch::Contains("excludes 0, at which the joint starts"));
+  }
+}
+
 TEST_CASE("An invalid joint is rejected with its line") {
   const auto load_error = [](const std::string& type, const std::string& inside) {
     SceneFile file(jointed(type, inside));
